@@ -21,7 +21,7 @@ int block_of(const assembly::System& system, const std::string& name) {
   return found == blocks.end() ? -1 : static_cast<int>(found - blocks.begin());
 }
 
-/// Unknowns of cells and of facets.
+/// Block numbers of the unknowns on cells and on facets.
 using Blocks = std::array<int, 2>;
 Blocks blocks_of(const assembly::System& system, const std::string& field) {
   return {block_of(system, field), block_of(system, "face " + field)};
@@ -34,7 +34,7 @@ std::unique_ptr<FluxTruncation> truncation_of(const assembly::System& system, co
                               system.constrained(blocks[1]), std::move(parameters));
 }
 
-/// Of fractures as wide as they are at x; none: they do not widen, on any rank.
+/// Transmissivities of fractures with the apertures at x; none: the system has no field "widening". Collective.
 std::optional<std::vector<Real>> transmissivities(const assembly::System& system,
                                                   const std::vector<laws::Conduit>& conduits,
                                                   const fields::BlockVector& x) {
@@ -66,7 +66,7 @@ class BalanceError final : public MeshError {
       index_of_wells_[c.well] += c.index;
       if (c.face < 0 || mesh.dim() == 3) continue;
       const Real distance = distance_along(c);
-      Real& most = error.flow.fed[c.face];  // of several wells in a face
+      Real& most = error.flow.fed[c.face];  // largest distance among the wells of a face
       if (std::abs(distance) > std::abs(most)) most = distance;
     }
     index_of_wells_ = base::sum_over_ranks(*mesh.comm, index_of_wells_);
@@ -157,7 +157,7 @@ class BalanceError final : public MeshError {
  private:
   bool is_flow(const Functional& J) const { return J.what == parameters_.flow.what; }
 
-  /// From the middle of a fracture face to its well.
+  /// Signed distance of a well from the centre of its fracture face, along the face, m.
   Real distance_along(const WellConnection& c) const {
     const auto& face = system_.mesh().fracture_faces[c.face];
     const auto& x = parameters_.wells.wells[c.well].points[0];
@@ -193,7 +193,7 @@ class BalanceError final : public MeshError {
       if (one.names == names) sum += one.value;
     return sum;
   }
-  /// Into the domain, by what is prescribed.
+  /// Inflow into the domain through prescribed conditions of a boundary.
   Real through(const std::string& boundary, const fields::BlockVector& x,
                const std::vector<assembly::Reaction>& reactions) {
     const auto number = index_of(system_.mesh().boundary_names, boundary);
@@ -229,14 +229,15 @@ class BalanceError final : public MeshError {
     return base::sum_over_ranks(*mesh.comm, sum) / area_of(faces);
   }
 
-  /// Of the flow from a well, W (p_w - p), it is that by p_w; of the pressure in one the mean by W.
+  /// Adds the derivative of a well functional. The flow W (p_w - p) is differentiated by p_w. The pressure of a well is
+  /// the mean weighted by W.
   template <class Rows>
   void add_well(const Functional& J, const std::array<Rows, 2>& rows) const {
     for (const auto& c : connections_)
       if (parameters_.wells.wells[c.well].name == J.well)
         rows[c.face >= 0](c.row, 0) += is_flow(J) ? c.index : c.index / index_of_wells_[c.well];
   }
-  /// Of the flow through a boundary it is that by the pressure there.
+  /// Adds the derivative of a boundary flow, which is that by the prescribed pressure.
   template <class Rows>
   void add_boundary(const std::string& boundary, const Rows& rows) const {
     const auto& mesh = system_.mesh();
@@ -256,15 +257,15 @@ class BalanceError final : public MeshError {
   BalanceErrorParameters parameters_;
   Blocks blocks_, carriers_{};
   StepRates rates_;
-  std::vector<Real> of_state_;  // components of the last state that was asked for
+  std::vector<Real> of_state_;  // components of the last state of of_state()
   std::vector<WellConnection> connections_;
   std::vector<Real> index_of_wells_;       // sum of W over all ranks
   std::vector<char> is_at_well_;           // [owned cell]
-  std::set<std::string> in_rock_;          // wells
-  std::map<std::string, int> conditions_;  // boundaries of those that hold pressures
+  std::set<std::string> in_rock_;          // names of wells in rock
+  std::map<std::string, int> conditions_;  // [condition] boundary; conditions with prescribed pressure
   std::unique_ptr<HybridError> error_;
-  std::unique_ptr<FluxTruncation> truncation_, carrier_;  // of the balance; of what carries, null: nothing
-  HybridFlows carried_;                                   // too much of it, in the last state that was asked for
+  std::unique_ptr<FluxTruncation> truncation_, carrier_;  // of the balance; of the carrier (null: none)
+  HybridFlows carried_;                                   // excess transport in the last state
 };
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace sprekk::physics {
 
 void Comparison::fail(const std::string& place, const std::string& what) {
   const auto line = fmt::format("{}: Sprekk > {}: {}", scene_.origin, place, what);
-  if (!has(errors_, line)) errors_.push_back(line);  // of a joint that several fractures have
+  if (!has(errors_, line)) errors_.push_back(line);  // several fractures may share a joint
 }
 
 bool Comparison::check_name(const std::string& section, const std::string& place, const std::string& name,
@@ -66,7 +66,7 @@ void Comparison::compare_fractures() {
     if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
       check_material("Fractures > " + name, fracture.material, "joint");
   if (!names_.fractures || (scene_.fractures.empty() && !is_absent("Fractures"))) return;
-  const auto is_misspelt = [&](const std::string& name) {  // which is told
+  const auto is_misspelt = [&](const std::string& name) {  // reported elsewhere
     return std::any_of(scene_.fractures.begin(), scene_.fractures.end(), [&](const auto& one) {
       return !has(*names_.fractures, one.first) && !base::did_you_mean(one.first, {name}).empty();
     });

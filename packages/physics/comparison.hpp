@@ -1,4 +1,4 @@
-// What is wrong with a scene as a whole: its parts among each other and with its mesh.
+// Consistency checks of a whole scene: between its parts and with its mesh.
 #pragma once
 
 #include "assembly/constraints.hpp"
@@ -18,7 +18,7 @@ inline bool has(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What a scene must fit to, as far as it is known.
+/// Names of the mesh that the scene refers to, as far as they are known.
 struct MeshNames {
   std::optional<int> dim;
   std::optional<Names> regions, boundaries, fractures;
@@ -29,10 +29,10 @@ MeshNames names_of(const AnyMesh& mesh) {
   return {mesh.dim(), mesh.region_names, mesh.boundary_names, mesh.fracture_names};
 }
 
-/// Compares the parts of a scene and collects what does not fit; what could not be read is passed over.
+/// Compares the parts of a scene and collects errors. Ignores parts that could not be read.
 class Comparison {
  public:
-  /// `tied`: boundaries that are periodic; `begin`: the end of the first step, if it is known.
+  /// `tied`: periodic boundaries. `begin`: end of the first step if known, s.
   Comparison(const Scene& scene, const base::Report& report, const MeshNames& names, const Names& tied,
              const std::optional<Real>& begin)
       : scene_(scene), report_(report), names_(names), tied_(tied), begin_(begin) {}
@@ -41,30 +41,30 @@ class Comparison {
   const MeshNames& names() const { return names_; }
   const std::optional<Real>& begin() const { return begin_; }
 
-  /// Whether a section was read without an error in it.
+  /// Returns whether a section was read without errors.
   bool is_sound(const std::string& section) const { return report_.is_sound("Sprekk > " + section); }
-  /// Whether the scene has no such section; else it may have one that could not be read, or with a misspelt name.
+  /// Returns whether the section is certainly missing. It may exist with an unreadable or misspelt name otherwise.
   bool is_absent(const std::string& section) const {
     return is_sound(section) && !report_.with_unknown_names.count("Sprekk");
   }
 
   void fail(const std::string& place, const std::string& what);
-  /// The same of what has no place of its own.
+  /// Adds an error without a location of its own.
   void add(const std::string& what) { errors_.push_back(scene_.origin + ": " + what); }
-  /// What nothing holds: an error, unless modules that are not known yet hold it.
+  /// Sets a message about unsupported rock. It is an error unless modules that are not known yet support the rock.
   void fail_unheld(const std::string& what) { unheld_ = what; }
-  /// Whether a name in `section` may be one of those allowed.
+  /// Returns whether the name used in `section` is one of the allowed names. Reports an error otherwise.
   bool check_name(const std::string& section, const std::string& place, const std::string& name,
                   const std::optional<Names>& allowed);
-  /// Nothing given has no length.
+  /// Reports a list of wrong length. A missing list (n = 0) is valid.
   void check_length(const std::string& place, std::size_t n, const std::optional<int>& wanted);
 
-  /// The material of a region, if it is rock.
+  /// Material of a region if it is a rock; null otherwise.
   const Material* rock_of(const std::string& region) const;
-  /// The material of a fracture, if it is a joint and was read without an error.
+  /// Material of a fracture if it is a joint without errors; null otherwise.
   const Material* joint_of(const Fracture& fracture) const;
   std::string name_of(const Material& material) const;
-  /// Calls use(material) for the rock of each region of the mesh, once, if they are known.
+  /// Calls use(material) once for the rock of each region of the mesh, as far as the regions are known.
   template <class Use>
   void for_each_rock(const Use& use) const {
     std::vector<const Material*> done;
@@ -75,7 +75,7 @@ class Comparison {
       }
   }
 
-  /// Everything of the scene alone; of the conditions that fit to a mesh on this mesh.
+  /// Compares the whole scene; with a mesh, only those conditions that match the mesh.
   void compare();
   void compare(const mesh::GlobalMesh& mesh);
   const Names& errors() const { return errors_; }
@@ -97,13 +97,13 @@ class Comparison {
   std::string unheld_;
 };
 
-/// The conditions that hold unknowns of `field` (all of "") on a mesh that has all names, those of regions after those
-/// of boundaries.
+/// Conditions that prescribe unknowns of `field` ("": all fields) on a mesh with all names. Conditions of boundaries
+/// precede those of regions.
 std::vector<assembly::DirichletCondition> dirichlet_conditions(
     const std::map<std::string, BoundaryCondition>& conditions, const std::map<std::string, Region>& regions,
     const MeshNames& names, const std::string& field = "");
 
-/// A line for each boundary condition whose region is nowhere beside its boundary. Collective.
+/// Returns a line for each boundary condition whose region does not touch its boundary. Collective.
 std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

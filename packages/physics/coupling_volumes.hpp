@@ -1,4 +1,4 @@
-// How displacements change the room for a fluid: what its pressure works on.
+// Derivatives of pore and fracture volumes with respect to displacements, for the work of a fluid pressure.
 #pragma once
 
 #include "base/view.hpp"
@@ -8,23 +8,25 @@
 
 namespace sprekk::physics {
 
-/// Below, V_K = integral of biot div u over a cell and W_f = |f| n . mean([[u]]) of a fracture face, n from minus to
-/// plus; biot(cell) is Biot's coefficient of a local cell. All are m^2 (2D: m), on the device.
+/// Volumes: V_K is the integral of biot div u over a cell. W_f = |f| n . mean([[u]]) belongs to a fracture face, with n
+/// from minus to plus. biot(cell) is Biot's coefficient of a local cell. All derivatives are in m^2 (2D: m) and on the
+/// device.
 using OfCell = std::function<Real(LocalIndex cell)>;
 
-/// dV_K/du of the cells' nodes: [cell, node * dim + component].
+/// dV_K/du for the nodes of the cells: [cell, node * dim + component].
 View<Real**> cell_volumes(const mesh::Mesh& mesh, const OfCell& biot);
 
-/// dV_K/dbeta of the sides' bubbles: [entity of Loop::fracture_sides, component].
+/// dV_K/dbeta for the face bubbles: [entity of Loop::fracture_sides, component].
 View<Real**> bubble_volumes(const mesh::Mesh& mesh, const OfCell& biot);
 
-/// This side's part of dW_f/d(u, beta): [entity of Loop::fracture_sides, node * dim + component; component].
+/// Contribution of one side to dW_f/d(u, beta): [entity of Loop::fracture_sides, node * dim + component; component].
 View<Real**> side_volumes(const mesh::Mesh& mesh);
 
-/// dV_K of the tip functions: [entity of Loop::tip_cells, node * dim + component]; cells of order 1.
+/// dV_K for the tip functions: [entity of Loop::tip_cells, node * dim + component]. Requires cells of order 1.
 View<Real**> tip_cell_volumes(const mesh::Mesh& mesh, const OfCell& biot);
 
-/// Part of dW_f of the tip functions on a side: [entity of Loop::tip_sides, node * dim + component]; cells of order 1.
+/// Contribution of one side to dW_f for the tip functions: [entity of Loop::tip_sides, node * dim + component].
+/// Requires cells of order 1.
 View<Real**> tip_side_volumes(const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

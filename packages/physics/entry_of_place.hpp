@@ -1,4 +1,4 @@
-// Entries that are expressions of the place.
+// Scene entries that depend on the position.
 #pragma once
 
 #include "base/check.hpp"
@@ -28,7 +28,7 @@ inline void check_constant_in_time(base::Section& s, const std::string& entry,
   for (const auto& value : values) check_constant_in_time(s, entry, value);
 }
 
-/// Describes an entry that may depend on x, y, z, not on t; T: an Expression, an optional one, or several.
+/// Declares an entry that may depend on x, y, z, but not on t. T: Expression, optional Expression, or a vector of them.
 template <class T>
 void entry_of_place(base::Section& s, T& target, const std::string& name, const std::string& unit,
                     const base::Bounds& bounds, const std::string& meaning) {
@@ -36,8 +36,7 @@ void entry_of_place(base::Section& s, T& target, const std::string& name, const 
   check_constant_in_time(s, name, target);
 }
 
-/// The value of an entry at x. Throws an Error where it is out of bounds; of constants that was checked when they were
-/// read.
+/// Value of an entry at x. Throws an Error if the value is out of bounds. Constants were checked when they were read.
 inline Real value_at(const std::string& name, const base::Expression& value, const base::Bounds& bounds,
                      const std::array<Real, 3>& x) {
   const Real v = value(x, 0);

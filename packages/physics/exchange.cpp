@@ -4,7 +4,7 @@
 
 namespace sprekk::physics {
 
-/// Of one exchange, and its derivatives in the widening of its face and in what the fluid carries.
+/// Coefficient of one exchange and its derivatives by the widening of its face and by the field of FluidChange.
 struct Exchange::Coefficient {
   ConstView<Real*> factor, widening;
   ConstView<LocalIndex*> row, face;
@@ -85,7 +85,7 @@ void Exchange::add_residual(const assembly::State& state, const assembly::Rows& 
       });
 }
 
-/// Columns of owned unknowns have the numbers of their rows.
+/// Assumes that columns of owned unknowns have the numbers of their rows.
 void Exchange::add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
   const auto fluid = fluid_;
   const auto row = row_, face = face_;

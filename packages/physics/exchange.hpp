@@ -1,4 +1,4 @@
-// Exchange with what lies outside of the mesh, row by row.
+// Exchange with the exterior of the mesh, row by row.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -10,17 +10,18 @@
 
 namespace sprekk::physics {
 
-/// Exchanges c (p - p_outside) in rows of a field of pressures, of a compressible fluid c (e - e_outside)/c_f. With
-/// conduits c is the coefficient times the present transmissivity of a fracture face.
+/// Adds c (p - p_outside) to rows of a pressure field; for a compressible fluid c (e - e_outside)/c_f. With conduits, c
+/// is the coefficient times the present transmissivity of a fracture face.
 class Exchange {
  public:
-  /// Adds one with a coefficient to a row; those that other ranks own are dropped. `face`: owned, needed with conduits.
+  /// Adds an exchange to a row. Ignores rows of other ranks. `face`: owned fracture face, required with conduits.
   void add(LocalIndex row, Real coefficient, LocalIndex face = -1);
-  /// Once all are added. `block`: that of the field. `conduits`: [local fracture face], which "widening" widens.
-  /// `change`: the coefficient is times FlowFactor, its field being one on the same entities.
+  /// Completes the set-up after all exchanges have been added. `block`: block of the field. `conduits`: [local fracture
+  /// face], with apertures that depend on "widening". `change`: multiplies the coefficient by FlowFactor of a field on
+  /// the same entities.
   void bind(const assembly::Context& context, int block, const laws::Fluid& fluid,
             const std::vector<laws::Conduit>& conduits = {}, const std::optional<FluidChange>& change = {});
-  /// The pressures outside, in the order in which exchanges were added.
+  /// Sets the exterior pressures, Pa, in the order of add().
   void set_outside(const std::vector<Real>& pressures);
   void add_residual(const assembly::State& state, const assembly::Rows& r) const;
   void add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const;
@@ -35,7 +36,7 @@ class Exchange {
   laws::FluidResponse response_;
   std::vector<LocalIndex> rows_, faces_;
   std::vector<Real> coefficients_;
-  std::vector<char> kept_;  // [exchange as added]
+  std::vector<char> kept_;  // [exchange in the order of add()] row is owned
   ConstView<LocalIndex*> row_, face_;
   ConstView<Real*> coefficient_, outside_;
   ConstView<laws::Conduit*> conduit_;

@@ -1,4 +1,4 @@
-// What a fluid carries and is changed by.
+// Field that the fluid transports and that changes the fluid properties.
 #pragma once
 
 #include "base/expression.hpp"
@@ -10,16 +10,16 @@
 namespace sprekk::physics {
 
 struct FluidChange {
-  std::string field;  ///< u on cells; on facets "face " before it
+  std::string field;  ///< u on cells; on facets the name has the prefix "face "
   laws::FluidResponse response;
   base::Expression initial = 0;  ///< u at the start
 };
 
-/// What a flow of mass to or from an entity is times for what the fluid there carries, and its derivative.
+/// Factor of a mass flow to or from an entity, for the field u of the fluid there, with its derivative.
 struct FlowFactor {
   bool changes = false;
   laws::FluidResponse response = {};
-  ConstView<Real*> carried = {};  ///< u
+  ConstView<Real*> carried = {};  ///< u of the entities
 
   KOKKOS_INLINE_FUNCTION Real value(LocalIndex row) const { return changes ? response.flow(carried(row)).value : 1; }
   KOKKOS_INLINE_FUNCTION Real slope(LocalIndex row) const { return response.flow(carried(row)).slope; }

@@ -10,7 +10,7 @@ namespace sprekk::physics {
 
 namespace {
 
-/// Whether (k/mu) A is parallel to d on all faces of a cell.
+/// Returns whether (k/mu) A is parallel to d on all faces of a cell.
 template <Shape shape>
 bool is_orthogonal(const CellFaces<shape>& faces, const laws::Mobility& mobility) {
   constexpr int dim = mesh::dimension(shape);
@@ -27,7 +27,7 @@ bool is_orthogonal(const CellFaces<shape>& faces, const laws::Mobility& mobility
   return true;
 }
 
-/// How many cells are not orthogonal, and of how many, on all ranks. Collective.
+/// Number of non-orthogonal cells and number of cells on all ranks. Collective.
 std::array<GlobalIndex, 2> skew_cells(const mesh::Mesh& mesh, const Properties<laws::Mobility>& mobility) {
   std::array<GlobalIndex, 2> here{0, mesh.n_owned_cells};
   mesh::for_corners(mesh.shape, [&](auto shape) {

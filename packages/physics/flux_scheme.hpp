@@ -1,4 +1,4 @@
-// Which scheme a scene's flows follow.
+// Selection of the flux scheme of a scene.
 #pragma once
 
 #include "laws/darcy.hpp"
@@ -9,7 +9,7 @@
 
 namespace sprekk::physics {
 
-/// The entry "scheme" of a section of a scene, and the property of rock that flows depend on: "permeability".
+/// Entry "scheme" of a scene section, and the rock property that determines the flows, e.g. "permeability".
 struct SchemeEntry {
   std::string section, name, property;
 };
@@ -19,10 +19,11 @@ struct ChosenScheme {
   std::string reason;
 };
 
-/// The scheme of that name. "auto": rt0 on simplices; on others tpfa where that is exact for constant gradients (all
-/// (k/mu) A_i parallel to d_i, to 1e-10), else mimetic. Throws an Error for rt0 on other cells. Collective.
+/// Scheme of the given name. "auto" selects rt0 on simplices. On other cells it selects tpfa if tpfa is exact for
+/// constant gradients, i.e. if all (k/mu) A_i are parallel to d_i to 1e-10. Otherwise it selects mimetic. Throws an
+/// Error for rt0 on other cells. Collective.
 ChosenScheme flux_scheme(const SchemeEntry& entry, const mesh::Mesh& mesh, const Properties<laws::Mobility>& mobility);
-/// What is wrong with tpfa that a scene asks for where it is not exact, empty: nothing. Collective.
+/// Warning about tpfa where it is not exact; empty: none. Collective.
 std::string scheme_warning(const SchemeEntry& entry, const mesh::Mesh& mesh,
                            const Properties<laws::Mobility>& mobility);
 std::string name_of(FluxScheme scheme);

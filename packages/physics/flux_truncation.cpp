@@ -13,7 +13,8 @@ class Truncation final : public FluxTruncation {
  public:
   using Flux = HybridFlux<shape>;
   using Of = Potentials::Of;
-  static constexpr int dim = Flux::dim, n = Flux::n, fewest = dim == 2 ? 4 : 8;  // cells around a corner that counts
+  static constexpr int dim = Flux::dim, n = Flux::n, fewest = dim == 2 ? 4 : 8;  // least number of cells around a
+                                                                                 // corner for a fit
 
   Truncation(RCP<const mesh::Mesh> mesh, const Potentials::Layouts& layouts, ConstView<char*> held_facets,
              HybridFluxParameters parameters)
@@ -115,7 +116,7 @@ class Truncation final : public FluxTruncation {
     std::vector<Real> missed(mesh_->facets->id.size(), 0);
     base::collectively(*mesh_->comm, [&] {
       for (const auto& held : held_) {
-        if (!held.in_rock && dim == 2) continue;  // a point
+        if (!held.in_rock && dim == 2) continue;  // the end is a point
         Real mean = 0;
         mesh::Vector middle{};
         const auto points = flow_.points(held);
@@ -169,7 +170,7 @@ class Truncation final : public FluxTruncation {
     }
     return all;
   }
-  /// Where fractures meet, values along one have a kink.
+  /// Fracture faces. A corner on an intersection is irregular, because values along one fracture have a kink there.
   std::vector<PatchEntity<dim>> faces() const {
     const auto n_fractures = static_cast<GlobalIndex>(mesh_->fracture_names.size());
     std::vector<PatchEntity<dim>> all;

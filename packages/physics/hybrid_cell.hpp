@@ -1,4 +1,4 @@
-// Flow through the faces of one cell, from its pressure and those on its faces.
+// Hybrid form of the flow through the faces of one cell, as a function of its pressure and face pressures.
 #pragma once
 
 #include "assembly/cell_nodes.hpp"
@@ -12,11 +12,11 @@ namespace sprekk::physics {
 
 using mesh::Shape;
 
-/// How flows through a cell's faces follow from pressures: q_i = sum_j T_ij (p - p_j). All are exact for constant
-/// gradients where faces are plane, but tpfa.
+/// Scheme of the flows through the faces of a cell, q_i = sum_j T_ij (p - p_j). On cells with plane faces, all schemes
+/// except tpfa are exact for constant gradients.
 enum class FluxScheme {
-  rt0,   ///< lowest-order Raviart-Thomas-Nedelec on simplices
-  tpfa,  ///< two points, T diagonal: exact where (k/mu) n is parallel to the line from the cell's centre to the face's
+  rt0,     ///< lowest-order Raviart-Thomas-Nedelec on simplices
+  tpfa,    ///< two-point fluxes, T diagonal; exact where (k/mu) n is parallel to d_i
   mimetic  ///< any cell, with the quasi-RT inner product of Lie et al. (2012)
 };
 
@@ -31,7 +31,7 @@ struct CellFaces {
   static constexpr int n_face_corners = mesh::n_face_corners(shape);
   Real area[n][dim], centre[n][dim], corners[n_corners][dim], volume = 0;
 
-  /// From the nodes of the cell.
+  /// Computes the geometry from the nodes of the cell.
   template <int n_nodes>
   KOKKOS_INLINE_FUNCTION explicit CellFaces(const Real (&X)[n_nodes][dim]) {
     Real mean[dim] = {};
@@ -39,7 +39,7 @@ struct CellFaces {
       for (int i = 0; i < dim; ++i) mean[i] += X[k][i] / n_corners;
     for (int k = 0; k < n_corners; ++k)
       for (int i = 0; i < dim; ++i) corners[k][i] = X[k][i] - mean[i];
-    Real moved[dim] = {};  // from the mean of the corners to the centre: of pyramids over the faces
+    Real moved[dim] = {};  // from the mean of the corners to the centre, summed over the pyramids on the faces
     for (int f = 0; f < n; ++f) {
       measure(f);
       Real height = 0;
@@ -55,9 +55,9 @@ struct CellFaces {
   }
 
  private:
-  /// Area vector and centre of a face, of triangles around its first corner in 3D.
+  /// Computes area vector and centre of a face. In 3D the face consists of triangles around its first corner.
   KOKKOS_INLINE_FUNCTION void measure(int f) {
-    static constexpr auto nodes_of = mesh::face_nodes(shape);  // a table of the device's own
+    static constexpr auto nodes_of = mesh::face_nodes(shape);  // copy of the table for the device
     const auto& nodes = nodes_of[f];
     const auto& a = corners[nodes[0]];
     const auto& b = corners[nodes[1]];
@@ -83,7 +83,7 @@ struct CellFaces {
     }
   }
 
-  /// Half of (b - a) x (c - a).
+  /// Computes (b - a) x (c - a) / 2.
   KOKKOS_INLINE_FUNCTION static void cross(const Real (&a)[dim], const Real (&b)[dim], const Real (&c)[dim],
                                            Real (&result)[3]) {
     for (int i = 0; i < 3; ++i) {
@@ -93,7 +93,7 @@ struct CellFaces {
   }
 };
 
-/// What resists behind end e in addition, R, Pa s/m^3: T <- (T^-1 + R e e^T)^-1, exact for any R >= 0.
+/// Adds a resistance R, Pa s/m^3, in series with end e: T <- (T^-1 + R e e^T)^-1. Exact for any R >= 0.
 template <int n>
 KOKKOS_INLINE_FUNCTION void add_resistance(Real (&T)[n][n], int e, Real R) {
   const Real share = 1 / (1 + R * T[e][e]);
@@ -106,8 +106,8 @@ KOKKOS_INLINE_FUNCTION void add_resistance(Real (&T)[n][n], int e, Real R) {
   }
 }
 
-/// T of a cell, m^3/(Pa s), symmetric positive definite: A (k/mu) A^T / V, which gives the flow of a constant gradient,
-/// and a part that is zero for those.
+/// Matrix T of a cell, m^3/(Pa s), symmetric positive definite. It is the sum of A (k/mu) A^T / V, the flow of a
+/// constant gradient, and a part that vanishes for constant gradients.
 template <Shape shape>
 struct FlowMatrix {
   using Faces = CellFaces<shape>;
@@ -131,7 +131,7 @@ struct FlowMatrix {
       add_mimetic(faces, mobility);
   }
 
-  /// Lets nothing through face e: the limit of add_resistance() for large R.
+  /// Closes face e. This is the limit of add_resistance() for large R.
   KOKKOS_INLINE_FUNCTION void close(int e) {
     const Real own = T[e][e];
     for (int i = 0; i < n; ++i)
@@ -141,8 +141,8 @@ struct FlowMatrix {
   }
 
  private:
-  /// On simplices the functions phi_i = (x - x_i)/(d V) have M_ij = integral phi_i . (k/mu)^-1 phi_j, and T = M^-1.
-  /// Since the centres of faces add up to zero, T is A (k/mu) A^T / V + a 1 1^T, with 1/a = 1^T M 1.
+  /// Adds the second part of rt0. On simplices M_ij = integral phi_i . (k/mu)^-1 phi_j with phi_i = (x - x_i)/(d V),
+  /// and T = M^-1. Since the face centres sum to zero, T = A (k/mu) A^T / V + a 1 1^T with 1/a = 1^T M 1.
   KOKKOS_INLINE_FUNCTION void add_rt0(const Faces& faces, const laws::Mobility& mobility) {
     Real S[dim][dim] = {};  // mean of x x^T around the centre
     for (int k = 0; k < dim + 1; ++k)
@@ -153,7 +153,7 @@ struct FlowMatrix {
       for (int g = 0; g < n; ++g) T[f][g] += a;
   }
 
-  /// 6 tr(k/mu)/(d V) |A| (I - Q Q^T) |A|, with Q an orthonormal basis of the columns of |A| d.
+  /// Adds 6 tr(k/mu)/(d V) |A| (I - Q Q^T) |A|, where Q is an orthonormal basis of the columns of |A| d.
   KOKKOS_INLINE_FUNCTION void add_mimetic(const Faces& faces, const laws::Mobility& mobility) {
     Real size[n], Q[dim][n];
     for (int f = 0; f < n; ++f) {
@@ -184,7 +184,7 @@ struct FlowMatrix {
   }
 };
 
-/// The balance of an entity with n ends, and the flow into these, from the outward flow q through them.
+/// Computes the rows of an entity with n ends from the outward flows q: its balance, and the inflow of each end.
 template <int n>
 KOKKOS_INLINE_FUNCTION void balance(const Real (&q)[n], Real (&r)[1 + n]) {
   r[0] = 0;
@@ -193,7 +193,7 @@ KOKKOS_INLINE_FUNCTION void balance(const Real (&q)[n], Real (&r)[1 + n]) {
     r[1 + i] = -q[i];
   }
 }
-/// Its derivatives from those of q.
+/// Computes the derivatives of the rows from those of q.
 template <int n, int m>
 KOKKOS_INLINE_FUNCTION void balance(const Real (&dq)[n][m], Real (&J)[1 + n][m]) {
   for (int k = 0; k < m; ++k) {
@@ -205,9 +205,10 @@ KOKKOS_INLINE_FUNCTION void balance(const Real (&dq)[n][m], Real (&J)[1 + n][m])
   }
 }
 
-/// The balance of an entity with n ends, sum_i q_i, and the flow into it through them, -q_i, with
-/// q_i = sum_j T_ij ((e - e_j)/c + e e_j lift_j): mass per density at reference conditions, see laws::Fluid; for a
-/// constant density q_i = sum_j T_ij (p - p_j + lift_j).
+/// Rows of an entity with n ends: the balance sum_i q_i, and -q_i for each end, with
+///   q_i = sum_j T_ij ((e - e_j)/c + e e_j lift_j).
+/// Flows are mass divided by the density at reference conditions, see laws::Fluid. For constant density
+/// q_i = sum_j T_ij (p - p_j + lift_j).
 ///
 /// | symbol | shape  | unit       |                                                     |
 /// | x      | 1 + n  | Pa         | pressure of the entity, pressures on its ends       |
@@ -219,13 +220,13 @@ struct HybridFlow {
   laws::Fluid fluid;
   Real T[n][n], lift[n];
 
-  /// The same of a fluid that weighs so much more.
+  /// Returns the flow of a fluid whose weight is multiplied by `factor`.
   KOKKOS_INLINE_FUNCTION HybridFlow heavier(Real factor) const {
     HybridFlow result = *this;
     for (Real& each : result.lift) each *= factor;
     return result;
   }
-  /// Outward flow through each end.
+  /// Computes the outward flow through each end.
   KOKKOS_INLINE_FUNCTION void flow(const Real (&x)[1 + n], Real (&q)[n]) const {
     Real drop[n];
     for (int j = 0; j < n; ++j) drop[j] = fluid.drop(x[0], x[1 + j], lift[j]);
@@ -247,7 +248,7 @@ struct HybridFlow {
     balance(dq, J);
   }
 
-  /// The derivatives of flow() in x.
+  /// Computes the derivatives of flow() in x.
   KOKKOS_INLINE_FUNCTION void dflow(const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const {
     Real of_entity[n], of_end[n];
     for (int j = 0; j < n; ++j) {
@@ -264,7 +265,7 @@ struct HybridFlow {
   }
 };
 
-/// HybridFlow of entities whose T is kept.
+/// HybridFlow of entities with a stored matrix T.
 ///
 /// | symbol | shape           | unit       |                                                                 |
 /// | x, r   | 1 + n           | Pa, m^3/s  | as in HybridFlow, in the slots of `Unknowns`                    |

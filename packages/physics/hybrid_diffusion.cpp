@@ -100,7 +100,7 @@ class HybridDiffusion final : public assembly::Module {
     loaded_ = true;
   }
 
-  /// What prescribed flow and gravity make of u over the size of the domain.
+  /// Scale of u: its difference over the domain due to prescribed flows and gravity.
   assembly::Scales loads(Real t) const override {
     Real flux = outflow_.largest(t, false), weight = 0, mobility = 0;
     for_each_source(t, [&](LocalIndex, Real, Real source) { flux = std::max(flux, size_ * std::abs(source)); });
@@ -163,13 +163,13 @@ class HybridDiffusion final : public assembly::Module {
     return values;
   }
 
-  /// Of density and mobility.
+  /// Factors of density and mobility.
   std::array<Real, 2> factors(Real carried) const {
     const auto& response = parameters_.change->response;
     return {response.density(carried).value, response.mobility(carried).value};
   }
 
-  /// The largest component on the diagonal. Collective.
+  /// Largest diagonal component of the mobility. Collective.
   Real largest_mobility(const mesh::Mesh& mesh) const {
     Real here = 0;
     for (const auto& one : parameters_.mobility.values)
@@ -179,7 +179,7 @@ class HybridDiffusion final : public assembly::Module {
 
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !parameters_.change; }
 
-  /// The quadrature points of all boundary faces with a condition.
+  /// Adds the quadrature points of all boundary faces with a condition.
   void add_conditions() {
     for (std::size_t k = 0; k < outflow_.conditions().size(); ++k)
       for (const auto& face : mesh_->boundary_faces) {
@@ -203,12 +203,12 @@ class HybridDiffusion final : public assembly::Module {
   std::array<std::string, 2> names_{parameters_.field, "face " + parameters_.field};
   bool coupled_ = false;
   RCP<const mesh::Mesh> mesh_;
-  std::vector<int> blocks_;  // u of cells, of facets
+  std::vector<int> blocks_;  // u of cells, u of facets
   Real size_ = 0;            // largest extent of the domain, m
   bool loaded_ = false;
   std::unique_ptr<Op> op_;
   assembly::Term flow_;
-  int carried_ = -1;  // block of what changes the fluid
+  int carried_ = -1;  // block of the field that changes the fluid
   Outflow outflow_;
   std::array<assembly::Load, 2> load_;  // Q per time
 };

@@ -84,30 +84,30 @@ class Error final : public HybridError {
   static constexpr int n_sweeps = 5;
   static constexpr Real relaxation = 1.5;  // stable below 2
 
-  /// Of a cell or a fracture face.
+  /// Data of a cell or a fracture face.
   template <class In>
   struct Entity {
     In flux;
     std::array<int, In::n_places> place;
-    Real weight;  // in means: mobility times size^(dim - 2)
+    Real weight;  // weight in means: mobility times size^(dim - 2)
   };
-  /// A side of a fracture face in an owned cell.
+  /// Side of a fracture face in an owned cell.
   struct Side {
     LocalIndex face, cell;
     int local_face;
-    std::array<int, dim> corner;                         // of the cell, by those of the face
-    std::array<int, InFace::n_places> of_cell, of_face;  // places, by those of the face
+    std::array<int, dim> corner;                         // corners of the cell, in the order of the face corners
+    std::array<int, InFace::n_places> of_cell, of_face;  // places, in the order of the face places
     Real resistance;                                     // R, Pa s/m; 0: none
     Real spring;                                         // area / R
   };
-  /// A place where a potential is prescribed.
+  /// Place with a prescribed potential.
   struct HeldPlace {
     int place;
     mesh::Vector x;
     LocalIndex facet;
-    Real share;  // in the mean over its face
+    Real share;  // weight in the mean over its face
   };
-  /// With its places held_[begin] to held_[end - 1].
+  /// End with a prescribed potential. Its places are held_[begin] to held_[end - 1].
   struct HeldFace {
     typename Flux::Held of;
     std::size_t begin, end;
@@ -115,8 +115,8 @@ class Error final : public HybridError {
 
   const HybridDiffusionParameters& rock() const { return flow_.parameters().rock; }
 
-  /// Numbers of places: nodes of the rock; middles of its edges, by their nodes; points of fractures; middles of their
-  /// edges; in 2D, where nodes do not tell the two sides of a fracture apart, middles of sides.
+  /// Global numbers of places: rock nodes; midpoints of rock edges; fracture points; midpoints of fracture edges; in 2D
+  /// also midpoints of fracture sides, because nodes do not distinguish the two sides.
   GlobalIndex rock_place(GlobalIndex a, GlobalIndex b) const {
     return a == b ? a : mesh_->n_global_nodes * (1 + std::min(a, b)) + std::max(a, b);
   }
@@ -135,7 +135,7 @@ class Error final : public HybridError {
       cell_of_component_.insert(cell_of_component_.end(), InCell::n_components, c);
     }
   }
-  /// The place between two corners of a cell.
+  /// Place between two corners of a cell.
   int place_between(LocalIndex c, int a, int b) {
     const auto id = [&](int k) { return mesh_->node_id[mesh_->free_node(flow_.node(c, k))]; };
     return places_.add(rock_place(id(a), id(b)));
@@ -178,10 +178,10 @@ class Error final : public HybridError {
     }
   }
 
-  /// Where nothing resists, rock has the places of the fracture. Any cell may touch these with a corner, so all ranks
-  /// are told.
+  /// Identifies the places of rock and fracture on sides without resistance. Cells of any rank may touch these places
+  /// with a corner, so the pairs are gathered over all ranks. Collective.
   void join_places() {
-    std::vector<GlobalIndex> joined;  // place of the rock, of the fracture
+    std::vector<GlobalIndex> joined;  // pairs: place of the rock, place of the fracture
     const auto for_each_pair = [](const auto& visit) {
       for (int a = 0; a < dim; ++a)
         for (int b = a; b < dim; ++b) visit(a, b, InFace::place(a, b));
@@ -205,8 +205,8 @@ class Error final : public HybridError {
       });
   }
 
-  /// Sums of the sizes of second derivatives of half of the energy, by places: at least as large as any of its
-  /// curvatures, over values at places that are scaled by them.
+  /// Computes the Jacobi scaling of each place: the sum of the absolute second derivatives of half of the energy. It
+  /// bounds the curvature of the scaled energy from above. Collective.
   void find_stiffness() {
     Numbers sums(places_.size());
     const auto add = [&](const auto& entity) {
@@ -233,7 +233,8 @@ class Error final : public HybridError {
     return sum;
   }
 
-  /// Calls visit(side, what an area of the point stands for over R, shape functions) on sides that resist.
+  /// Calls visit(side, area of the point divided by R, shape functions) at the quadrature points of sides with
+  /// resistance.
   template <class Visit>
   void for_each_point_of_sides(const Visit& visit) const {
     for (const auto& side : sides_)
@@ -257,16 +258,17 @@ class Error final : public HybridError {
         cell_of_component_.push_back(held.in_rock ? held.entity : mesh_->fracture_faces[held.entity].cell[mesh::minus]);
     }
   }
-  /// Its unknown is the mean over an end that is no point.
+  /// Returns whether the facet unknown is a mean over the end, i.e. whether the end is not a point.
   static bool is_mean(const typename Flux::Held& held) { return held.in_rock || dim == 3; }
 
-  /// -e . e_v as a linear form of v: what components say of flows and of values at places, of which those of v follow
-  /// as the means of the potentials around, or from facets where a potential is prescribed.
+  /// Transpose of the error components: the linear form -e . e_v in v. Coefficients of flows and of values at places
+  /// are accumulated first. Values at places depend on v through means of the surrounding potentials, or through facets
+  /// with a prescribed potential.
   struct TransposedForm {
     const Error& error;
     std::vector<typename InCell::Flows> in_cells;
     std::vector<typename InFace::Flows> in_faces;
-    std::vector<std::array<Real, 2>> at_places;  // on the values there; on all that flows into a face, at its last
+    std::vector<std::array<Real, 2>> at_places;  // of the values; of the total inflow of a face, at its last place
     using Next = std::vector<Real>::const_iterator;
 
     explicit TransposedForm(const Error& of)
@@ -298,7 +300,7 @@ class Error final : public HybridError {
         }
       }
     }
-    /// See Error::add_two_points().
+    /// Transposes Error::add_two_points().
     void add_two_points(LocalIndex f, Next& next) {
       const auto well = error.flow_.parameters().fed.find(f);
       const bool fed = well != error.flow_.parameters().fed.end();
@@ -325,8 +327,7 @@ class Error final : public HybridError {
       next += n;
     }
 
-    /// Of a step of improve(): values at places become s - relaxation/stiffness times the slopes of the energy.
-    /// Collective.
+    /// Transposes one step of improve(): s - relaxation/stiffness * slope of the energy. Collective.
     void transpose_improvement() {
       std::vector<std::array<Real, 2>> more(at_places.size());
       std::vector<Real> y(at_places.size(), 0);
@@ -357,7 +358,7 @@ class Error final : public HybridError {
       error.places_.sum_over_ranks(more);
       for (std::size_t p = 0; p < more.size(); ++p) at_places[p][0] += more[p][0];
     }
-    /// Values at places follow from means over entities and flows.
+    /// Transposes the means at places. Adds coefficients of the flows and returns the coefficient of the mean.
     template <class Entity, class Flows>
     Real add_means(const Entity& entity, Flows& on_flows) const {
       using In = std::decay_t<decltype(entity.flux)>;
@@ -402,16 +403,16 @@ class Error final : public HybridError {
   };
   friend struct TransposedForm;
 
-  /// Of SimplexFlux::flux().
+  /// Results of SimplexFlux::flux().
   struct Components {
     std::vector<typename InCell::Components> in_cells;
     std::vector<typename InFace::Components> in_faces;
   };
-  /// What adds up at a place.
+  /// Sums at a place.
   enum Sum { weight, weighted, held, held_values, springs, drops, sides, inflow, n_sums };
   using Sums = std::vector<std::array<Real, n_sums>>;
 
-  /// Adds what an entity says of the potential at its places.
+  /// Adds the weighted values of an entity at its places.
   template <class Entity, class AtPlaces>
   static void add(const Entity& entity, const AtPlaces& p, Sums& sums) {
     for (std::size_t k = 0; k < p.size(); ++k) {
@@ -421,7 +422,7 @@ class Error final : public HybridError {
     }
   }
 
-  /// At places of held_. Error where an expression has no value.
+  /// Prescribed values at the places of held_. Throws an Error if an expression has no value.
   std::vector<Real> values_of_held(const Potentials& u, Real t) const {
     std::vector<Real> given;
     for (const auto& face : held_faces_)
@@ -431,7 +432,7 @@ class Error final : public HybridError {
     return given;
   }
 
-  /// And s at all places.
+  /// Returns the components and s at all places. `kept`: receives the sums; may be null. Collective.
   std::pair<MeshError::Parts, std::vector<Real>> parts(const Potentials& u, Real t, Sums* kept) const {
     Sums sums(places_.size());
     std::vector<typename InCell::Flows> in_cells;
@@ -483,13 +484,13 @@ class Error final : public HybridError {
     return {std::move(result), std::move(s)};
   }
 
-  /// Something adds to or takes from the flow in cells that need not be constant in them.
+  /// Returns whether the net source may vary within cells.
   bool varies() const { return !storage_.empty() || !rock().source.empty(); }
   typename InCell::Flows variation(LocalIndex c, const std::vector<Real>& s) const {
     const auto of_cell = at(s, cells_[c].place);
     return cells_[c].flux.variation([&](const auto&, const auto& l) { return InCell::quadratic(of_cell, l); });
   }
-  /// What is stored per time, less the source.
+  /// Appends the variation of the storage rate minus the source.
   void add_rates(const std::vector<Real>& s, Real t, const assembly::Rates& rates, MeshError::Parts& parts) {
     const auto stored = std::move(before_);
     const auto& older = stored[1].empty() ? stored[0] : stored[1];
@@ -508,7 +509,7 @@ class Error final : public HybridError {
     }
     parts.whole.resize(parts.error.size(), 0);
   }
-  /// At the start.
+  /// Stores the variation of the initial potential. Collective.
   void find_before() {
     base::collectively(*mesh_->comm, [&] {
       for (LocalIndex c = 0; !storage_.empty() && c < mesh_->n_owned_cells; ++c)
@@ -518,10 +519,11 @@ class Error final : public HybridError {
     });
   }
 
-  /// s at all places, see HybridErrorParameters.
+  /// Computes s at all places, see HybridError. Collective.
   std::vector<Real> common_potential(const Sums& sums) const {
-    constexpr Real fixed = 1e15;                            // weight of what is prescribed, over that of others
-    std::vector<std::array<Real, 2>> of_rock(sums.size());  // what rock adds to means in fractures: weight, weighted
+    constexpr Real fixed = 1e15;                            // relative weight of prescribed values
+    std::vector<std::array<Real, 2>> of_rock(sums.size());  // contributions of rock to means in fractures: weight,
+                                                            // weighted value
     const auto own = [&](int place) {
       const auto& sum = sums[place];
       if (sum[held] == 0) return std::array{sum[weight], sum[weighted] / sum[weight]};
@@ -543,7 +545,7 @@ class Error final : public HybridError {
       const auto [w, value] = own(static_cast<int>(p));
       s[p] = (w * value + of_rock[p][1]) / (w + of_rock[p][0]);
     }
-    std::vector<std::array<Real, 2>> beside_fractures(s.size());  // of rock: sum over sides, and how many
+    std::vector<std::array<Real, 2>> beside_fractures(s.size());  // values in rock: sum over sides, number of sides
     for (const auto& side : sides_)
       for (std::size_t k = 0; k < side.of_cell.size(); ++k) {
         if (!is_apart(side, k)) continue;
@@ -554,18 +556,18 @@ class Error final : public HybridError {
         of[0] += sum[held] > 0 ? value : (w * value + c * beside + sum[drops]) / (w + c);
         ++of[1];
       }
-    places_.sum_over_ranks(beside_fractures);  // a cell may touch a fracture with a corner alone
+    places_.sum_over_ranks(beside_fractures);  // a cell may touch a fracture with one corner only
     for (std::size_t p = 0; p < s.size(); ++p)
       if (beside_fractures[p][1] > 0) s[p] = beside_fractures[p][0] / beside_fractures[p][1];
     return s;
   }
 
-  /// Whether place k of a side is one of the fracture and one of the rock.
+  /// Returns whether place k of a side has different values in fracture and rock.
   static bool is_apart(const Side& side, std::size_t k) {
     return side.resistance > 0 && side.of_cell[k] != side.of_face[k];
   }
 
-  /// A step of Jacobi's method towards the s with the least energy.
+  /// Performs one Jacobi step towards the s of least energy. Collective.
   void improve(const Components& fluxes, const std::vector<typename InCell::Flows>& in_cells, const Sums& sums,
                std::vector<Real>& s) const {
     Numbers slopes(s.size());
@@ -610,22 +612,22 @@ class Error final : public HybridError {
     return result;
   }
 
-  /// 2D: what flow between two points misses where a face gains what flows in; and of a well what its distance from the
-  /// middle of the face makes of the ways to both ends.
+  /// Adds the components of two-point fluxes (2D). The first is due to the inflow into the face. In a face with a well,
+  /// the distance of the well from the centre changes the resistance to both ends; this gives two further components.
   void add_two_points(LocalIndex f, const typename InFace::Flows& q, Real inflow, bool is_answer,
                       std::vector<Real>& error) const {
     const auto well = flow_.parameters().fed.find(f);
     const bool fed = well != flow_.parameters().fed.end();
     error.push_back(std::sqrt(two_point_resistance(f)) * (fed ? inflow : q[0] + q[1]));
     if (!fed) return;
-    for (int end = 0; end < 2; ++end) {  // the flow through end k is opposite to corner 1 - k
+    for (int end = 0; end < 2; ++end) {  // the flow through end k is stored at the opposite corner, 1 - k
       const Real nearer = this->nearer(f, end, well->second);
       const Real factor = std::sqrt(std::abs(well->second) / flow_.parameters().transmissivity[f]);
       error.push_back((is_answer && nearer < 0 ? -1 : 1) * factor * q[Flux::opposite_ridge(end)]);
     }
   }
 
-  /// By how much a well is nearer to an end of a face than its middle.
+  /// Distance by which a well is nearer to an end of a face than the face centre is; negative: farther.
   Real nearer(LocalIndex f, int end, Real distance) const {
     Real towards = 0;
     for (int i = 0; i < dim; ++i) towards += flow_.face(f).plane.d[end][i] * mesh_->fracture_faces[f].frame[1][i];
@@ -644,7 +646,7 @@ class Error final : public HybridError {
     }
   }
 
-  /// Barycentric coordinates and share of the area, of a rule of degree 5 on edges, of degree 4 on triangles.
+  /// Barycentric coordinates and weights of a quadrature rule, of degree 5 on edges and degree 4 on triangles.
   static constexpr int n_face_points = dim == 2 ? 3 : 6;
   static Real face_point(int p, std::array<Real, dim>& l) {
     if constexpr (dim == 2) {
@@ -678,11 +680,11 @@ class Error final : public HybridError {
         w[t] += rock().weight[i] * face.frame[1 + t][i] * u.heaviness(Of::facet, mesh_->facets->fracture_face[f]);
     return w;
   }
-  /// 2D: L/(6 T), with the length L.
+  /// Resistance of two-point fluxes in 2D, L/(6 T) with the length L.
   Real two_point_resistance(LocalIndex f) const {
     return mesh_->fracture_faces[f].area / (6 * flow_.parameters().transmissivity[f]);
   }
-  /// The mean of the quadratic potential along a face; 2D: that which has the potentials of both ends.
+  /// Mean of the quadratic potential along a face. In 2D the potential is fitted to the potentials of both ends.
   Real mean_in_face(LocalIndex f, const typename InFace::Flows& q, const Potentials& u) const {
     if constexpr (dim == 3) return u(Of::facet, mesh_->facets->fracture_face[f]);
     const auto* ridge = &mesh_->facets->ridge[f * dim];
@@ -691,7 +693,7 @@ class Error final : public HybridError {
 
   RCP<const mesh::Mesh> mesh_;
   Flux flow_;
-  std::vector<Real> storage_;  // HybridErrorParameters
+  std::vector<Real> storage_;  // see HybridErrorParameters
   Places places_;
   std::vector<Entity<InCell>> cells_;
   std::vector<Entity<InFace>> faces_;
@@ -701,7 +703,7 @@ class Error final : public HybridError {
   std::vector<HeldFace> held_faces_;
   std::vector<LocalIndex> cell_of_component_;
   std::size_t n_of_energy_ = 0;
-  /// [owned cell] variation of the potential in the last state and the one before; before the first step there is one
+  /// [owned cell] variation of the potential in the last two states; before the first step only the initial one
   std::array<std::vector<typename InCell::Flows>, 2> before_;
   Sums sums_;  // of the last state
 };

@@ -1,4 +1,4 @@
-// The simplices and fracture faces that the hybrid form balances, and what flows through their ends in a state.
+// Geometry of simplices and fracture faces in the hybrid form, and the flows through their ends.
 #pragma once
 
 #include "assembly/constraints.hpp"
@@ -21,24 +21,24 @@ namespace sprekk::physics {
 struct HybridFluxParameters {
   HybridDiffusionParameters rock = {};                  ///< as in the module
   std::vector<Real> transmissivity = {};                ///< [local fracture face] m^3/(Pa s)
-  std::vector<assembly::DirichletCondition> held = {};  ///< what is prescribed on facets
-  std::map<LocalIndex, Real> fed = {};  ///< 2D: fracture faces that a well feeds, and how far it is from their middle
+  std::vector<assembly::DirichletCondition> held = {};  ///< conditions that prescribe values on facets
+  std::map<LocalIndex, Real> fed = {};  ///< 2D: [fracture face with a well] distance of the well from the centre, m
 };
 
-/// (e - 1)/c.
+/// Potential of a compressible fluid, (e - 1)/c.
 inline Real potential_of(const laws::Fluid& fluid, Real p) {
   const Real c = fluid.compressibility;
   return c == 0 ? p : std::expm1(c * (p - fluid.reference_pressure)) / c;
 }
 
-/// Potentials of a state, or what they change by in an answer to small forces. Those of a compressible fluid are
-/// (e - 1)/c, of which the flux of mass is the gradient.
+/// Potentials of a state, or their change under small forces. Compressible fluid: (e - 1)/c, whose gradient drives the
+/// mass flux.
 class Potentials {
  public:
   using Layouts = std::array<const fields::Layout*, 2>;
   enum Of { cell, facet };
 
-  /// Collective.
+  /// Imports ghost values. `dp`: change of p, optional. Collective.
   Potentials(const Layouts& layouts, const laws::Fluid& fluid, const std::array<const fields::Vector*, 2>& p,
              const std::array<const fields::Vector*, 2>& dp = {})
       : fluid_(fluid), is_answer_(dp[0]) {
@@ -53,13 +53,13 @@ class Potentials {
     return is_answer_ ? fluid_.density(p_[of][i]) * dp_[of][i] : of_pressure(p_[of][i]);
   }
   Real of_pressure(Real p) const { return potential_of(fluid_, p); }
-  /// What drives a flow from an entity to one of its ends, see laws::Fluid.
+  /// Driving potential difference from an entity to one of its ends, see laws::Fluid.
   Real drop(Of of, LocalIndex entity, LocalIndex end, Real lift) const {
     const Real a = p_[of][entity], b = p_[facet][end];
     if (!is_answer_) return fluid_.drop(a, b, lift);
     return fluid_.ddrop_da(a, b, lift) * dp_[of][entity] + fluid_.ddrop_db(a, b, lift) * dp_[facet][end];
   }
-  /// The fluid's weight in the gradient, over rho_0 g: e^2.
+  /// Factor of rho_0 g in the gradient: e^2.
   Real heaviness(Of of, LocalIndex i) const {
     const Real e = fluid_.density(p_[of][i]);
     return e * e * (is_answer_ ? 2 * fluid_.compressibility * dp_[of][i] : 1);
@@ -78,12 +78,12 @@ class Potentials {
   std::array<std::vector<Real>, 2> p_, dp_;
 };
 
-/// Outward, [owned cell * (d + 1) + face] and [owned fracture face * d + ridge].
+/// Outward flows, [owned cell * (d + 1) + face] and [owned fracture face * d + ridge].
 struct HybridFlows {
   std::vector<Real> in_cells, in_faces;
 };
 
-/// Owned cells and fracture faces. Refers to the layouts, of cells and of facets.
+/// Geometry and flows of owned cells and fracture faces. Holds references to the layouts of cells and facets.
 template <Shape shape>
 class HybridFlux {
  public:
@@ -122,11 +122,11 @@ class HybridFlux {
   const Cell& cell(LocalIndex c) const { return cells_[c]; }
   const Face& face(LocalIndex f) const { return faces_[f]; }
 
-  /// The corner opposite to a face of a cell, or to a ridge of a face.
+  /// Corner opposite to a face of a cell, or to a ridge of a fracture face.
   static constexpr int opposite(int face) { return dim == 2 ? (face + 2) % 3 : face; }
   static constexpr int opposite_ridge(int ridge) { return dim == 2 ? 1 - ridge : (ridge + 2) % 3; }
 
-  /// Of each side of a fracture face, per area.
+  /// Transfer coefficient per area of each side of a fracture face, m/(Pa s); infinite: no resistance.
   Real exchange(LocalIndex f) const {
     return parameters_.rock.exchange.empty() ? INFINITY : parameters_.rock.exchange[f];
   }
@@ -134,7 +134,7 @@ class HybridFlux {
   LocalIndex facet_of_cell(LocalIndex c, int k) const { return mesh_->facets->of_cell[c * n + k]; }
   LocalIndex facet_of_face(LocalIndex f, int k) const { return mesh_->facets->ridge[f * dim + k]; }
 
-  /// What drops of the potential [face, or ridge] let flow out, by the corners opposite to them.
+  /// Outward flows of potential differences, [face or ridge]. The result is indexed by the corner opposite to each end.
   typename InCell::Flows in_cell(LocalIndex c, const std::array<Real, n>& drops) const {
     FlowMatrix<shape> matrix(cells_[c].faces, parameters_.rock.mobility.of_cell(*mesh_, c), parameters_.rock.scheme);
     for (int k = 0; k < n; ++k)
@@ -151,7 +151,7 @@ class HybridFlux {
       for (int l = 0; l < dim; ++l) q[opposite_ridge(l)] += faces_[f].plane.T[l][k] * drops[k];
     return q;
   }
-  /// Of a state.
+  /// Outward flows of a state.
   typename InCell::Flows in_cell(LocalIndex c, const Potentials& u) const {
     std::array<Real, n> drops{};
     for (int k = 0; k < n; ++k) drops[k] = u.drop(Of::cell, c, facet_of_cell(c, k), lift(cells_[c].faces.centre[k]));
@@ -164,7 +164,7 @@ class HybridFlux {
     return in_face(f, drops);
   }
 
-  /// A face of a cell, or the end of a fracture face, where the potential is prescribed.
+  /// Face of a cell, or end of a fracture face, with a prescribed potential.
   struct Held {
     bool in_rock;
     LocalIndex entity;  ///< cell or fracture face
@@ -172,7 +172,7 @@ class HybridFlux {
     LocalIndex facet;
     int condition;
   };
-  /// `mask` [owned facet]: is prescribed. Collective.
+  /// Ends with a prescribed potential. `mask`: [owned facet] nonzero if prescribed. Collective.
   std::vector<Held> held(ConstView<char*> mask) const {
     fields::Vector owned(layouts_[1]->owned()), all(layouts_[1]->ghosted());
     {
@@ -187,14 +187,14 @@ class HybridFlux {
       const LocalIndex facet = facet_of_cell(face.cell, face.local_face);
       if (!face.owned || is_held(facet, 0) == 0) continue;
       const int condition = condition_of(face.boundary, mesh_->cell_region[face.cell], -1);
-      if (condition < static_cast<int>(parameters_.held.size()))  // else something else holds it
+      if (condition < static_cast<int>(parameters_.held.size()))  // else another condition applies
         result.push_back({true, face.cell, face.local_face, facet, condition});
     }
-    std::map<std::pair<LocalIndex, int>, int> conditions;  // of ends, of which several boundaries may have one
+    std::map<std::pair<LocalIndex, int>, int> conditions;  // [end]; several boundaries may share an end
     for (const auto& rim : mesh_->facets->rims) {
       if (rim.face >= mesh_->n_owned_fracture_faces || is_held(facet_of_face(rim.face, rim.ridge), 0) == 0) continue;
       const int condition = condition_of(rim.boundary, -1, mesh_->fracture_faces[rim.face].fracture);
-      if (condition == static_cast<int>(parameters_.held.size())) continue;  // something else holds it
+      if (condition == static_cast<int>(parameters_.held.size())) continue;  // another condition applies
       const auto [known, is_new] = conditions.emplace(std::pair(rim.face, rim.ridge), condition);
       if (!is_new) known->second = std::min(known->second, condition);
     }
@@ -203,8 +203,8 @@ class HybridFlux {
     return result;
   }
 
-  /// A point of a held end between corners a and b of the cell, or of the fracture face, and its share in the mean of a
-  /// quadratic function over the end.
+  /// Point of a prescribed end, halfway between corners a and b of the cell or the fracture face. `share`: weight in
+  /// the mean of a quadratic function over the end.
   struct HeldPoint {
     int a, b;
     mesh::Vector x;
@@ -266,7 +266,7 @@ class HybridFlux {
     for (int i = 0; i < dim; ++i) sum += parameters_.rock.weight[i] * way[i];
     return sum;
   }
-  /// The first that holds a face of the rock (fracture < 0), or the end of a fracture.
+  /// First condition on a face of the rock (fracture < 0), or on an end of a fracture.
   int condition_of(int boundary, int region, int fracture) const {
     const auto& all = parameters_.held;
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) {

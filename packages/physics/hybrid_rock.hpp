@@ -1,4 +1,4 @@
-// The operator of the hybrid form on the cells of a mesh.
+// Operator of the hybrid form on the cells of a mesh.
 #pragma once
 
 #include "physics/hybrid_diffusion.hpp"
@@ -8,7 +8,8 @@
 
 namespace sprekk::physics {
 
-/// Sets [row of the cell, face] what resists on sides of fractures, 1/(exchange A), where anything does.
+/// Sets the resistances of fracture sides, 1/(exchange A), in [row of the cell, face]. Without finite `exchange` the
+/// operator is unchanged.
 template <Shape shape>
 void set_resistance(HybridCell<shape>& op, const mesh::Mesh& mesh, const std::vector<Real>& exchange) {
   if (std::all_of(exchange.begin(), exchange.end(), [](Real e) { return std::isinf(e); })) return;

@@ -1,4 +1,4 @@
-// The physics that there are. One line each here, and nothing else outside of its room.
+// List of all physics. Outside its own folder, a physics is named only here.
 #pragma once
 
 #include "physics/flow/flow.hpp"

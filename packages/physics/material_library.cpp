@@ -14,13 +14,13 @@ constexpr const char* file = "material library";
 
 Teuchos::ParameterList library_list() { return base::parse_xml(materials_text(), file, "Sprekk"); }
 
-/// The section "Materials" as scenes have it.
+/// Section "Materials" in the format of scenes.
 struct Library {
   std::map<std::string, Material> materials;
   void describe(base::Section& s) { s.named_sections(materials, "Materials", ""); }
 };
 
-/// `Young's modulus 7.8e+10, density 2950`: what is given, without type and source.
+/// Entries without type and source, e.g. `Young's modulus 7.8e+10, density 2950`.
 std::string values(const Teuchos::ParameterList& set) {
   std::string text;
   for (const auto& named_entry : set) {
@@ -39,7 +39,7 @@ std::map<std::string, Material> library_materials() {
 
 void add_library_materials(std::map<std::string, Material>& materials, const std::vector<std::string>& names) {
   auto library = library_materials();
-  for (const auto& name : names) materials.insert(library.extract(name));  // keeps what is there
+  for (const auto& name : names) materials.insert(library.extract(name));  // existing materials have priority
 }
 
 std::string wrong_material(const std::string& name, const std::string& type,

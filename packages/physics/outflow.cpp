@@ -51,7 +51,7 @@ Real Outflow::largest(Real t, bool beyond) const {
   return largest;
 }
 
-/// [owned row] the residual over the sum of area times coefficient, U.
+/// [owned row] residual divided by U, the sum of area times coefficient.
 std::map<LocalIndex, Real> Outflow::unbalanced_per_coefficient(const assembly::State& state) const {
   std::map<LocalIndex, Real> sums;
   if (state.unbalanced.empty()) return sums;

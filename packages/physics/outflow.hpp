@@ -1,4 +1,4 @@
-// What leaves through boundaries where a flux is prescribed.
+// Outflow through boundaries with a prescribed flux.
 #pragma once
 
 #include "assembly/load.hpp"
@@ -17,32 +17,32 @@ namespace sprekk::physics {
 struct BoundaryCondition;
 struct Scene;
 
-/// What leaves through a boundary per area and time: the value; or with a coefficient c as much as c (u - value), see
-/// Exchange, the value being that beyond the boundary.
+/// Prescribed outflow per area and time: the value, or c (u - value) with a coefficient c, see Exchange. In the second
+/// case the value is that of u outside.
 struct FluxCondition {
   int boundary;
   base::Expression value;
   std::optional<base::Expression> coefficient = {};
-  int region = -1;    ///< only on faces of cells of this region; -1: all
-  int fracture = -1;  ///< through the end of this fracture, of which the area is length times aperture; -1: of rock
+  int region = -1;    ///< only faces of cells of this region; -1: all
+  int fracture = -1;  ///< only ends of this fracture, with the area length times aperture; -1: rock
 };
 
-/// The entries of a boundary condition that make a FluxCondition: a flux, or a coefficient and the value beyond.
+/// Entries of a boundary condition that define a FluxCondition: a flux, or a coefficient and the exterior value.
 struct FluxEntries {
   std::optional<base::Expression> BoundaryCondition::*flux, BoundaryCondition::*beyond, BoundaryCondition::*coefficient;
 };
 
-/// Those of a scene that hold for rock, or for ends of fractures.
+/// Flux conditions of a scene on rock, or on ends of fractures.
 std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
                                            bool of_fractures = false);
 
 struct OutflowNames {
-  std::string coefficient;  ///< its entry in a scene
-  std::string inflows;      ///< what flows in, in results.json
-  std::string unit;         ///< of that
+  std::string coefficient;  ///< name of its entry in a scene
+  std::string inflows;      ///< name of the inflow in results.json
+  std::string unit;         ///< unit of the inflow
 };
 
-/// Adds what leaves by conditions to the rows of a field.
+/// Adds the outflow of flux conditions to the rows of a field.
 class Outflow {
  public:
   Outflow(std::vector<FluxCondition> conditions, OutflowNames names)
@@ -50,12 +50,12 @@ class Outflow {
 
   const std::vector<FluxCondition>& conditions() const { return conditions_; }
   bool constant_in_time() const;
-  /// A point x of the boundary with the condition, the area for which it stands, and the facet's row. Throws an Error
-  /// where the coefficient is below zero.
+  /// Adds a boundary point x with the area that it represents and the row of its facet. Throws an Error if the
+  /// coefficient is negative.
   void add(std::size_t condition, LocalIndex row, Real area, const std::array<Real, 3>& x);
-  /// Once all are added.
+  /// Completes the set-up after all points have been added.
   void bind(const assembly::Context& context, int block, const laws::Fluid& fluid);
-  /// Moves on to time t, and adds what is prescribed to a load on the host, [owned row].
+  /// Sets the time t. Adds the prescribed outflows to a load on the host, [owned row].
   template <class Host>
   void set_time(Real t, const Host& load) {
     std::vector<Real> beyond;
@@ -70,10 +70,10 @@ class Outflow {
   }
   void add_residual(const assembly::State& state, const assembly::Rows& r) const { exchange_.add_residual(state, r); }
   void add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const { exchange_.add_jacobian(state, J); }
-  /// The largest value on this rank, of a flux or of what is beyond.
+  /// Largest absolute value on this rank, of fluxes or of exterior values.
   Real largest(Real t, bool beyond) const;
-  /// Appends the rates into the domain for each condition, by boundaries: of those with a coefficient such that the
-  /// rows of the last step are in balance.
+  /// Appends the inflow rate of each condition, named by its boundary. Rates with a coefficient are corrected so that
+  /// the rows of the last step are balanced.
   void totals(const assembly::State& state, const mesh::Mesh& mesh, std::vector<assembly::Total>& totals) const;
 
  private:
@@ -92,7 +92,7 @@ class Outflow {
   int block_ = -1;
   LocalIndex n_owned_ = 0;
   laws::Fluid fluid_;
-  Exchange exchange_;  // with what is beyond
+  Exchange exchange_;  // with the exterior
 };
 
 }  // namespace sprekk::physics

@@ -1,4 +1,4 @@
-// Gradients of values that entities have at their centres, from all entities around their corners.
+// Recovery of gradients from values at entity centres, with patches of entities around corners.
 #pragma once
 
 #include "physics/places.hpp"
@@ -7,25 +7,25 @@
 
 namespace sprekk::physics {
 
-/// An entity and its corners; entities of one corner have one number of it, on all ranks.
+/// Entity and its corners. A corner has the same number in all its entities, on all ranks.
 template <int n_corners>
 struct PatchEntity {
   std::array<Real, 3> centre = {};
   std::array<GlobalIndex, n_corners> corner = {};
-  std::array<std::array<Real, 3>, n_corners> at = {};  ///< places of the corners
+  std::array<std::array<Real, 3>, n_corners> at = {};  ///< coordinates of the corners
   std::array<bool, n_corners> is_regular = {};         ///< values are smooth around the corner
 };
 
-/// Around every corner a linear function is fitted by least squares to the values of the entities that meet there; the
-/// gradient in an entity is the mean of those of its corners, of corners with too few entities around them only where
-/// there are no others.
+/// Recovers gradients by least squares. A linear function is fitted around each corner to the values of the adjacent
+/// entities. The gradient of an entity is the mean over its corners. Corners that are not regular or have fewer than
+/// `fewest` entities count only if the entity has no others.
 template <int n_corners>
 class PatchFit {
  public:
   using Entity = PatchEntity<n_corners>;
   using Vector = std::array<Real, 3>;
 
-  /// Collective.
+  /// Builds the patches. Collective.
   PatchFit(std::vector<Entity> entities, int fewest, const RCP<const Comm>& comm)
       : entities_(std::move(entities)), fewest_(fewest) {
     for (const auto& entity : entities_) {
@@ -35,7 +35,7 @@ class PatchFit {
     places_.close(comm);
   }
 
-  /// [entity] of values [entity]. Collective.
+  /// Gradients [entity] of values [entity]. Collective.
   std::vector<Vector> gradients(const std::vector<Real>& values) const {
     std::vector<Sums> sums(places_.size());
     for (std::size_t e = 0; e < entities_.size(); ++e)
@@ -57,8 +57,9 @@ class PatchFit {
   }
 
  private:
-  static constexpr Real ridge = 1e-3;  // of the mean spread: no gradient where the entities lie in a plane or a line
-  using Sums = std::array<Real, 14>;   // of 1, x, the six x_i x_j, v, v x, with x seen from the corner
+  static constexpr Real ridge = 1e-3;  // relative to the mean spread; suppresses gradients normal to coplanar or
+                                       // collinear centres
+  using Sums = std::array<Real, 14>;   // sums of 1, x, the six x_i x_j, v, v x; x relative to the corner
 
   static void add(const Entity& entity, int k, Real value, Sums& sums) {
     Vector x;
@@ -72,7 +73,7 @@ class PatchFit {
     }
   }
 
-  /// C^-1 times the sum of v x, both about the means, C the sum of x x^T and the ridge.
+  /// Computes C^-1 times the sum of v x, both about the means. C is the sum of x x^T plus the ridge term.
   static Vector gradient(const Sums& sums) {
     Real C[3][3], product[3];
     for (int i = 0, next = 4; i < 3; ++i) {
@@ -80,7 +81,7 @@ class PatchFit {
       for (int j = i; j < 3; ++j) C[i][j] = C[j][i] = sums[next++] - sums[1 + i] * sums[1 + j] / sums[0];
     }
     const Real added = ridge * (C[0][0] + C[1][1] + C[2][2]) / 3;
-    if (added == 0) return {};  // of a single entity
+    if (added == 0) return {};  // single entity
     for (int i = 0; i < 3; ++i) C[i][i] += added;
     Vector result{};
     Real det = 0;

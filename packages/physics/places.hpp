@@ -1,4 +1,4 @@
-// Sums over all ranks at places that several of them know by number.
+// Sums over all ranks at places that several ranks share by global number.
 #pragma once
 
 #include "base/types.hpp"
@@ -18,7 +18,7 @@ class Places {
     if (is_new) ids_.push_back(id);
     return found->second;
   }
-  /// Once all are added. Collective.
+  /// Builds the maps after all places have been added. Collective.
   void close(const RCP<const Comm>& comm) {
     const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
     map_ =
@@ -28,7 +28,7 @@ class Places {
   std::size_t size() const { return ids_.size(); }
   GlobalIndex id(int place) const { return ids_[place]; }
 
-  /// Collective.
+  /// Replaces each value by its sum over all ranks. Collective.
   template <std::size_t m>
   void sum_over_ranks(std::vector<std::array<Real, m>>& values) const {
     fields::MultiVector here(map_, m), unique(import_->getSourceMap(), m);

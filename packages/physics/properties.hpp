@@ -1,4 +1,4 @@
-// What the materials of a scene give the entities of a mesh.
+// Material properties of mesh entities.
 #pragma once
 
 #include "fields/layout.hpp"
@@ -9,25 +9,25 @@
 
 namespace sprekk::physics {
 
-/// The number of a name; how many there are, if it is none of them.
+/// Index of a name; the number of names if it is missing.
 inline int index_of(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// The different values of a property, and which of them each entity has; no list of numbers where the group of an
-/// entity (region, fracture) tells.
+/// Distinct values of a property, and the number of the value of each entity. Without numbers, the group of an entity
+/// (region, fracture) selects its value.
 template <class T>
 struct Properties {
   std::vector<T> values;
   std::vector<int> number = {};
 
   const T& of(int entity, int group) const { return values[number.empty() ? group : number[entity]]; }
-  /// Of a local cell, where groups are regions.
+  /// Value of a local cell, if groups are regions.
   const T& of_cell(const mesh::Mesh& mesh, LocalIndex cell) const { return of(cell, mesh.cell_region[cell]); }
 };
 
-/// `uniform` and `at(group, entity)` tell of a group whether one value holds everywhere, and the value at an entity's
-/// place.
+/// Collects a property. `uniform(group)`: one value holds in the whole group. `at(group, entity)`: the value at the
+/// position of the entity; entity -1 in uniform groups.
 template <class T, class Uniform, class At>
 Properties<T> properties(int n_groups, const std::vector<int>& group_of, const Uniform& uniform, const At& at) {
   Properties<T> result;
@@ -45,9 +45,9 @@ Properties<T> properties(int n_groups, const std::vector<int>& group_of, const U
   return result;
 }
 
-/// The values of local entities from those of owned ones. Collective.
+/// Values of local entities from those of owned entities. Collective.
 std::vector<Real> with_ghosts(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<Real>& owned);
-/// Likewise with the components of a layout, [entity * components + component].
+/// Does the same for the components of a layout, [entity * components + component].
 std::vector<Real> with_ghosts(const fields::Layout& layout, const std::vector<Real>& owned);
 
 }  // namespace sprekk::physics

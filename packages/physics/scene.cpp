@@ -137,7 +137,7 @@ std::vector<std::string> Scene::excavated() const {
 
 namespace {
 
-/// Materials by the names of fractures, as a part of a scene: so that their entries are read as those of Materials.
+/// Section with the joints of single fractures. Their entries are read like those of Materials.
 struct OwnJoints {
   base::Tables tables;
   base::Expression::Named expressions;
@@ -150,7 +150,7 @@ struct OwnJoints {
   }
 };
 
-/// The names of all entries of joints.
+/// Names of all entries of joints.
 std::vector<std::string> names_of_entries() {
   std::vector<std::string> names = {"material"};
   for (const auto& entry : base::specification<Material>("").entries) names.push_back(entry.name);
@@ -161,7 +161,7 @@ bool is_entry(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The name of the joint that a single fracture has, if for entries of its own.
+/// Name of the base joint of a single fracture with individual properties.
 const std::string& joint_name(const Scene& scene, const mesh::Mesh& mesh, const mesh::SingleFracture& single) {
   const auto own = single.properties.find("material");
   return own == single.properties.end() ? scene.fractures.at(mesh.fracture_names[single.set]).material : own->second;

@@ -1,4 +1,4 @@
-// What a scene says of physics: its sections are made of the parts that each physics has in them.
+// Scene data of all physics. Each section consists of one part per physics.
 #pragma once
 
 #include "base/check.hpp"
@@ -29,7 +29,7 @@ struct Materials : P::Rock..., P::Joint... {
 /// Parts of a section, one of each physics.
 template <class... Part>
 struct Parts : Part... {
-  /// What all of them hold.
+  /// Concatenates the prescribed fields of all parts.
   std::vector<Prescribed> prescribed() const {
     std::vector<Prescribed> all;
     const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
@@ -58,7 +58,7 @@ struct BoundaryConditions : Parts<typename P::BoundaryCondition...> {
 
 template <class... P>
 struct Probes : Parts<typename P::Probe...> {
-  /// Of the totals that one part shows.
+  /// Concatenates the totals of all parts.
   std::vector<std::string> totals() const {
     std::vector<std::string> names;
     const auto add = [&](const auto& some) { names.insert(names.end(), some.begin(), some.end()); };
@@ -96,24 +96,24 @@ void for_each_physics(const Call& call) {
   OfAll<detail::Each>::call(call);
 }
 
-/// Rock, or the surface of a fracture.
+/// Properties of a rock or of a joint (fracture).
 struct Material : OfAll<detail::Materials> {
   std::string type;                   ///< "elastic" or "joint"
-  std::optional<std::string> source;  ///< where the values come from
+  std::optional<std::string> source;  ///< reference for the values
   void describe(base::Section& section);
 };
 
-/// The rock as a whole.
+/// Properties of the whole rock.
 struct Bulk : OfAll<detail::Bulks> {
-  std::string material;       ///< of all regions that have none of their own
-  std::vector<Real> gravity;  ///< m/s^2; its force is the density times this
+  std::string material;       ///< default material of regions
+  std::vector<Real> gravity;  ///< m/s^2; body force: density times gravity
   void describe(base::Section& section);
 };
 
-/// What a part of the rock has of its own, in place of what Bulk says.
+/// Properties of a region. They replace those of Bulk.
 struct Region : OfAll<detail::Regions> {
   std::optional<std::string> material;
-  bool excavated = false;  ///< its cells are not there; its walls are a boundary of the same name
+  bool excavated = false;  ///< cells are removed; the walls form a boundary with the name of the region
   void describe(base::Section& section);
 };
 
@@ -124,60 +124,60 @@ struct Fracture : OfAll<detail::Fractures> {
 
 struct BoundaryCondition : OfAll<detail::BoundaryConditions> {
   std::string boundary;
-  std::optional<std::string> region;    ///< only where the boundary touches this region
-  std::optional<std::string> fracture;  ///< only where this fracture ends on the boundary
+  std::optional<std::string> region;    ///< restricts the condition to faces of this region
+  std::optional<std::string> fracture;  ///< restricts the condition to the ends of this fracture
   void describe(base::Section& section);
 };
 
-/// Where a run looks at what, in each step.
+/// Location and outputs that a run records in each step.
 struct Probe : OfAll<detail::Probes> {
-  std::vector<std::string> outputs;  ///< names of them
-  std::vector<Real> point, line;     ///< coordinates; of the line's ends
-  int points = 11;                   ///< of a line, its ends among them
+  std::vector<std::string> outputs;  ///< names of outputs
+  std::vector<Real> point, line;     ///< coordinates of the point, or of both ends of the line
+  int points = 11;                   ///< number of points on the line, including both ends
   std::optional<std::string> boundary, region, fracture;
-  std::string value = "mean";  ///< over a boundary, a region or a fracture: "mean", "maximum", "minimum", "integral"
+  std::string value = "mean";  ///< over boundary, region or fracture: "mean", "maximum", "minimum", "integral"
   bool is_extended() const { return boundary || region || fracture; }
   void describe(base::Section& section);
 };
 
 struct Scene : OfAll<detail::Sections> {
-  std::string origin = "scene";  ///< opens messages about it: the file that it was read from
+  std::string origin = "scene";  ///< prefix of messages about the scene: the file name
   base::Tables tables;
-  base::Expression::Named expressions;  ///< that others call by name
+  base::Expression::Named expressions;  ///< callable by name
   std::map<std::string, Material> materials;
   Bulk bulk;
   std::map<std::string, Region> regions;
-  std::optional<std::string> default_joint;  ///< the material of fractures that name none
+  std::optional<std::string> default_joint;  ///< default material of fractures
   std::map<std::string, Fracture> fractures;
-  std::map<int, Material> own_joints;  ///< [single fracture] of those with properties of their own; see own_joints()
+  std::map<int, Material> own_joints;  ///< [single fracture] with individual properties; see own_joints()
   std::map<std::string, BoundaryCondition> boundary_conditions;
   std::map<std::string, Probe> probes;
 
-  /// Tables and named expressions, which all later entries may call.
+  /// Declares tables and named expressions, which all later entries may call.
   void describe_expressions(base::Section& section);
-  /// All others; adds materials of the library that are named.
+  /// Declares all other sections. Adds the library materials that the scene names.
   void describe_physics(base::Section& section);
-  /// Takes over from another scene what is no entry.
+  /// Copies from another scene the data that are not entries.
   void keep(const Scene& other) { keep_parts(other); }
   const Material& material_of(const std::string& region) const;
-  std::vector<std::string> excavated() const;  ///< regions that are
+  std::vector<std::string> excavated() const;  ///< names of the excavated regions
 };
 
-/// Materials of the single fractures of a mesh that have properties of their own: that of the set, or the one that
-/// their property "material" names, with these entries in place. Properties that are no entries of a joint are passed
-/// over. Error: an entry is wrong, or misspelt; all are told.
+/// Materials of the single fractures with individual mesh properties. The base is the material of the fracture set, or
+/// the one named by the property "material"; the other properties replace its entries. Ignores properties that are not
+/// joint entries. Throws an Error that lists all invalid or misspelt entries.
 std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh);
-/// Of the joint that a single fracture has of its own: `material`, the one that it is made of, and the entries that
-/// differ from those of that, as effective_input.xml would have them. Empty of others.
+/// Individual joint entries of a single fracture: its base `material` and the entries that differ from that material,
+/// formatted as in effective_input.xml. Empty for other fractures.
 std::map<std::string, std::string> own_entries(const Scene& scene, const mesh::Mesh& mesh, int single);
-/// A line for the names of properties that were passed over, if there are any.
+/// Message with the names of ignored properties; empty: none.
 std::vector<std::string> properties_passed_over(const Scene& scene, const mesh::Mesh& mesh);
-/// The material of a single fracture.
+/// Material of a single fracture.
 const Material& joint_of(const Scene& scene, const mesh::Mesh& mesh, int single);
-/// "SCENE: Sprekk > Materials > NAME" of one of its materials.
+/// Location of a material in the scene: "SCENE: Sprekk > Materials > NAME".
 std::string place_of(const Scene& scene, const Material& material);
 
-/// What `find` finds of a material; its errors get the place of the material in the scene.
+/// Returns find(). Adds the location of the material in the scene to its errors.
 template <class Find>
 auto at_place(const Scene& scene, const Material& material, const Find& find) {
   try {
@@ -187,7 +187,7 @@ auto at_place(const Scene& scene, const Material& material, const Find& find) {
   }
 }
 
-/// What of(material, x) finds of local cells, at their centres; once for each region where uniform(material).
+/// Properties of(material, x) of local cells at their centres; one value per region where uniform(material).
 template <class Uniform, class Of>
 auto by_cell(const Scene& scene, const mesh::Mesh& mesh, const Uniform& uniform, const Of& of) {
   const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };

@@ -1,5 +1,4 @@
-// The flux in a simplex that follows from what flows through its faces, the potential that it belongs to, and how far
-// both are from another potential.
+// Flux in a simplex from the flows through its faces, its potential, and the distance of both from another potential.
 #pragma once
 
 #include "base/types.hpp"
@@ -10,15 +9,16 @@
 
 namespace sprekk::physics {
 
-/// A simplex of d dimensions. Places are those of a quadratic function: corners, then the middles of edges (0, 1),
-/// (0, 2), ..., (1, 2), ...
+/// Flux in a simplex of d dimensions. Quadratic functions have their values at places: the corners, then the midpoints
+/// of edges (0, 1), (0, 2), ..., (1, 2), ...
+///
 ///
 /// | symbol   | shape          | unit       |                                                              |
-/// | X        | [corner, d]    | m          | corners, seen from the centre                                |
+/// | X        | [corner, d]    | m          | corners, relative to the centre                              |
 /// | gradient | [corner, d]    | 1/m        | of barycentric coordinates                                   |
 /// | K        | [d, d]         | m^2/(Pa s) | mobility; root: K = root root^T                              |
 /// | q        | [corner]       | m^3/s      | outward flow through the face opposite to a corner           |
-/// | w        | [d]            | N/m^3      | weight of the fluid: at rest grad p = w                      |
+/// | w        | [d]            | N/m^3      | weight of the fluid; at rest grad p = w                      |
 template <int d>
 class SimplexFlux {
  public:
@@ -44,10 +44,10 @@ class SimplexFlux {
       for (int l = 0; l < n; ++l) centre_[i] += corners[l][i] / n;
       for (int k = 0; k < n; ++k) X_[k][i] = corners[k][i] - centre_[i];
     }
-    Real edges[d][d];  // [k][i] of corner k + 1 from corner 0
+    Real edges[d][d];  // [k][i] edge from corner 0 to corner k + 1
     for (int k = 0; k < d; ++k)
       for (int i = 0; i < d; ++i) edges[k][i] = X_[k + 1][i] - X_[0][i];
-    Real inverse[d][d];  // [i][k] grad of barycentric coordinate k + 1
+    Real inverse[d][d];  // [i][k] gradient of barycentric coordinate k + 1
     volume_ = std::abs(invert(edges, inverse));
     for (int k = 2; k <= d; ++k) volume_ /= k;
     for (int i = 0; i < d; ++i) {
@@ -71,7 +71,7 @@ class SimplexFlux {
 
   Real volume() const { return volume_; }
 
-  /// The potential p with grad p = w - K^-1 q that has this mean; q is the flux of lowest-order Raviart and Thomas.
+  /// Potential p with grad p = w - K^-1 q and the given mean. q is the lowest-order Raviart-Thomas flux.
   AtPlaces potential(const Flows& q, Real mean, const Weight& w) const {
     const auto [a, b] = affine(q);
     Real spread = 0;  // mean of x . K^-1 x
@@ -87,14 +87,14 @@ class SimplexFlux {
     return p;
   }
 
-  /// The quadratic functions that are 1 at one place and 0 at others.
+  /// Quadratic shape functions: 1 at one place and 0 at the others.
   static AtPlaces shapes(const Barycentric& l) {
     AtPlaces N{};
     for (int a = 0; a < n; ++a)
       for (int b = a; b < n; ++b) N[place(a, b)] = a == b ? l[a] * (2 * l[a] - 1) : 4 * l[a] * l[b];
     return N;
   }
-  /// A quadratic function at barycentric coordinates.
+  /// Value of a quadratic function at barycentric coordinates.
   static Real quadratic(const AtPlaces& s, const Barycentric& l) {
     Real sum = 0;
     const auto N = shapes(l);
@@ -102,14 +102,14 @@ class SimplexFlux {
     return sum;
   }
 
-  /// Components of root^-1 (q - K w) at points of a rule that is exact for products of two such.
+  /// Components of root^-1 (q - K w) at the points of a quadrature rule that is exact for products of two fluxes.
   Components flux(const Flows& q, const Weight& w) const {
     return components([&](const Barycentric& l, Real(&e)[d]) {
       flux(q, l, e);
       for (int i = 0; i < d; ++i) e[i] -= w[i];
     });
   }
-  /// Those of root^-1 K grad N for the functions of places.
+  /// Components of root^-1 K grad N for the shape functions.
   std::array<Components, n_places> gradients() const {
     std::array<Components, n_places> result;
     for (int a = 0; a < n; ++a)
@@ -120,7 +120,7 @@ class SimplexFlux {
         });
     return result;
   }
-  /// Those of root^-1 (q + K (grad s - w)).
+  /// Components of root^-1 (q + K (grad s - w)).
   static Components error(const Components& flux, const std::array<Components, n_places>& gradients,
                           const AtPlaces& s) {
     Components e = flux;
@@ -128,8 +128,8 @@ class SimplexFlux {
       for (int i = 0; i < n_components; ++i) e[i] += s[k] * gradients[k][i];
     return e;
   }
-  /// What values(x, l) at places x with barycentric coordinates l are above their mean, so that sums of products are
-  /// integrals, as far as both are linear.
+  /// Deviations of values(x, l) from their mean, scaled so that sums of products are integrals. x: coordinates, l:
+  /// barycentric coordinates. Exact if both functions are linear.
   template <class ValuesAt>
   Flows variation(const ValuesAt& values) const {
     Flows result{};
@@ -149,7 +149,7 @@ class SimplexFlux {
   }
 
  private:
-  /// q = a + b x: sum of q_k (x - X_k)/(d V).
+  /// Coefficients of q = a + b x, the sum of q_k (x - X_k)/(d V).
   std::pair<std::array<Real, d>, Real> affine(const Flows& q) const {
     std::array<Real, d> a{};
     Real b = 0;
@@ -159,7 +159,7 @@ class SimplexFlux {
     }
     return {a, b};
   }
-  /// K^-1 q at barycentric coordinates.
+  /// Computes e = K^-1 q at barycentric coordinates.
   void flux(const Flows& q, const Barycentric& l, Real (&e)[d]) const {
     const auto [a, b] = affine(q);
     Real v[d];
@@ -180,7 +180,8 @@ class SimplexFlux {
     return sum;
   }
 
-  /// Of vectors e = K^-1 v that at(barycentric coordinates, e) finds: their squares are the integral of v . K^-1 v.
+  /// Components of vectors e = K^-1 v that at(barycentric coordinates, e) computes. The sum of squares is the integral
+  /// of v . K^-1 v.
   template <class At>
   Components components(const At& at) const {
     Components result{};
@@ -195,7 +196,7 @@ class SimplexFlux {
     return result;
   }
 
-  /// The inverse and the determinant.
+  /// Computes the inverse and returns the determinant.
   static Real invert(const Real (&A)[d][d], Real (&inverse)[d][d]) {
     Real M[d][2 * d], det = 1;
     for (int i = 0; i < d; ++i)
@@ -215,7 +216,7 @@ class SimplexFlux {
     return det;
   }
 
-  /// Of the points of a rule that is exact for quadratic functions.
+  /// Largest barycentric coordinate of the points of a rule that is exact for quadratic functions.
   static constexpr Real outer = d == 1 ? 0.788675134594813 : d == 2 ? 2.0 / 3 : 0.585410196624969;
 
   Real centre_[d] = {}, X_[n][d], gradient_[n][d], resistance_[d][d], root_[d][d] = {}, volume_;

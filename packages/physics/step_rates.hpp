@@ -1,4 +1,4 @@
-// The rates of a step from one state to the next one that is looked at.
+// Time integration rates between the states that are evaluated.
 #pragma once
 
 #include "assembly/rates.hpp"
@@ -7,12 +7,13 @@
 
 namespace sprekk::physics {
 
-/// Follows the times at which states are looked at.
+/// Records the times of evaluated states.
 class StepRates {
  public:
   explicit StepRates(Real start) : time_(start) {}
 
-  /// Of the step to t, where `last` are the system's; where it was cut those of implicit Euler over all of it.
+  /// Rates of the step to t. `last`: the rates of the system. After a bisected step, returns implicit Euler over the
+  /// whole step.
   assembly::Rates to(Real t, const assembly::Rates& last) {
     using assembly::Rates;
     const Real dt = t - time_;

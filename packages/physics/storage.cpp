@@ -14,13 +14,13 @@ using assembly::Loop;
 namespace {
 
 /// | symbol  | shape    | unit      |                                                             |
-/// | x       | 1        | U         | u: Pa, of energy K                                          |
-/// | r       | 1        | m^3/s     | rate V (s - s_old), of energy W                             |
-/// | volume  | [entity] | m^3       | V, of fractures the area                                    |
-/// | room    | [entity] | -         | see Capacity, of fractures m                                |
-/// | growth  | [entity] | 1/U       | of energy J/(m^3 K)                                         |
+/// | x       | 1        | U         | u; U: Pa, or K for energy                                   |
+/// | r       | 1        | m^3/s     | rate V (s - s_old); for energy W                            |
+/// | volume  | [entity] | m^3       | V; for fractures the area                                   |
+/// | room    | [entity] | -         | see Capacity; for fractures m                               |
+/// | growth  | [entity] | 1/U       | see Capacity; for energy J/(m^3 K)                          |
 /// | initial | [entity] | U         | u at the start of the run                                   |
-/// | gained  | [owned entity, 1] | U | u_old less that                                            |
+/// | gained  | [owned entity, 1] | U | u_old minus `initial`                                      |
 /// | rate    |          | 1/s       | of assembly::State                                          |
 struct StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>>;
@@ -30,16 +30,16 @@ struct StorageCell {
   ConstView<Real**> gained;
   Real rate = 0;
 
-  /// Of sums without cancellation, so that what all steps store adds up to what is stored.
+  /// Computes the row without cancellation, so the increments of all steps add up to the stored amount.
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[1], Real (&r)[1]) const {
     r[0] = 0;
-    if (e >= static_cast<int>(gained.extent(0))) return;  // another rank's
+    if (e >= static_cast<int>(gained.extent(0))) return;  // entity of another rank
     const Real old = initial(e) + gained(e, 0), step = x[0] - initial(e) - gained(e, 0);
     const Real space = room(e) + growth(e) * gained(e, 0);
     const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * step);
     r[0] = volume(e) * rate * (space * fluid.density(old) * denser + growth(e) * step * fluid.density(x[0]));
   }
-  /// V s, now and at the start of the step.
+  /// Returns V s, now and at the start of the step.
   KOKKOS_INLINE_FUNCTION Real stored(int e, const Real (&x)[1]) const {
     return volume(e) * (room(e) + growth(e) * (x[0] - initial(e))) * fluid.density(x[0]);
   }
@@ -50,9 +50,10 @@ struct StorageCell {
   }
 };
 
-/// The same of a fracture face whose aperture is a = max(a_0 + b, a_min) with a widening b, the second of x, m:
+/// Storage in a fracture face with the aperture a = max(a_0 + b, a_min). The widening b, m, is the second unknown:
 /// r = rate |f| (a e - a_old e_old).
-/// | gained   | [owned face, 2] | Pa, m | p_old less that at the start, b_old                        |
+///
+/// | gained   | [owned face, 2] | Pa, m | p_old minus the initial p; b_old                           |
 /// | least    | [local face]    | m     | a_min                                                      |
 struct StorageFace : StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<1, 1>>;
@@ -83,7 +84,7 @@ struct StorageFace : StorageCell {
   }
 };
 
-/// The same with the density times d(v), see laws::FluidResponse, v being the last of x and of what is kept.
+/// Storage with the density multiplied by d(v), see laws::FluidResponse. v is the last component of x and of `gained`.
 template <class Op>
 struct Changed {
   static constexpr int m = Op::Columns::size;
@@ -94,7 +95,7 @@ struct Changed {
 
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 1], Real (&r)[1]) const {
     r[0] = 0;
-    if (e >= static_cast<int>(base.gained.extent(0))) return;  // another rank's
+    if (e >= static_cast<int>(base.gained.extent(0))) return;  // entity of another rank
     Real own[m];
     for (int k = 0; k < m; ++k) own[k] = x[k];
     const Real d = response.density(x[m]).value, d_old = response.density(base.gained(e, m)).value;
@@ -111,22 +112,22 @@ struct Changed {
   }
 };
 
-/// Of one entity.
+/// Storage data of one entity.
 struct Stored {
   Real volume;
   Capacity capacity;
   Real initial;
-  Real carried = 0;  ///< what changes the fluid, at the start
-  Real least = 0;    ///< of a fracture's aperture, m
+  Real carried = 0;  ///< initial value of the field that changes the fluid
+  Real least = 0;    ///< residual aperture of a fracture, m
 };
 
-/// Finds what is stored in the entities of a loop, in their order.
+/// Computes the storage data of the entities of a loop, in their order.
 using Find = std::function<std::vector<Stored>(const mesh::Mesh&)>;
 
 template <class Op, bool changes>
 class Storage final : public assembly::Module {
  public:
-  static constexpr int m = Op::Columns::size, n = m + changes;  // of the history
+  static constexpr int m = Op::Columns::size, n = m + changes;  // components of the history
 
   struct Of {
     std::string name, field, scale;
@@ -219,12 +220,12 @@ class Storage final : public assembly::Module {
   Of of_;
   Find find_;
   std::vector<Real> carried_;  // [entity] at the start
-  Real largest_ = 0;           // initial value on this rank
+  Real largest_ = 0;           // largest absolute initial value on this rank
   Op op_;
   std::unique_ptr<Assembler> assembler_;
 };
 
-/// `prefix`: of the name of the field that changes the fluid.
+/// Creates the module. `prefix`: prefix of the field that changes the fluid.
 template <class Op>
 std::unique_ptr<assembly::Module> module_of(std::string name, std::string field, std::string scale,
                                             fields::Entity entity, Loop loop, const std::string& prefix,

@@ -1,4 +1,4 @@
-// Entries that are a symmetric positive definite tensor.
+// Scene entries for symmetric positive definite tensors.
 #pragma once
 
 #include "base/expression.hpp"
@@ -10,11 +10,11 @@
 
 namespace sprekk::physics {
 
-/// No component depends on the place.
+/// Returns whether all components are independent of the position.
 bool is_uniform_tensor(const std::vector<base::Expression>& components);
 
-/// From one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, XZ in 3D. Throws an Error where it is not
-/// positive definite.
+/// Tensor at x from 1 value, from XX, YY[, ZZ], or from XX, YY, XY in 2D and XX, YY, ZZ, XY, YZ, XZ in 3D. Throws an
+/// Error if it is not positive definite.
 laws::Mobility tensor_at(const std::string& name, const std::vector<base::Expression>& components, int dim,
                          const std::array<Real, 3>& x);
 

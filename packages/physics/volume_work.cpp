@@ -63,7 +63,7 @@ struct VolumeLoad {
   }
 };
 
-/// use(slot) with the slot of a displacement in an entity: the nodes of a cell, or the bubble of a side.
+/// Calls use(slot) with the slot of the displacements of an entity: the nodes of a cell, or the bubble of a side.
 template <class Use>
 assembly::Term with_slot(const assembly::Context& context, int block, const Use& use) {
   const auto shape = context.mesh()->shape;

@@ -1,4 +1,4 @@
-// The work of a pressure on a volume that displacements change, as terms that are compiled once for all cells.
+// Work of a pressure on a volume that depends on displacements, as terms compiled once for all cells.
 #pragma once
 
 #include "assembly/term.hpp"
@@ -7,10 +7,9 @@
 
 namespace sprekk::physics {
 
-/// A pressure p, or an unknown that acts like one, and the volume V [entity, m] that displacements u change, m being
-/// the unknowns of u that an entity has.
+/// Pressure p (or an equivalent unknown) and the volume V that displacements u change. Its derivative has the shape
+/// [entity, m], where m is the number of displacement unknowns of an entity.
 ///
-/// | symbol    | shape       | unit          |                          |
 /// | loop      |             |               | its entities             |
 /// | u         |             | m             | block of displacements   |
 /// | p         |             | Pa            | block of the pressure    |
@@ -23,11 +22,12 @@ struct VolumeCoupling {
   ConstView<Real*> reference = {};
 };
 
-/// Rows of u: -(p - p_0) dV/du, N; row of p: rate V, m^3/s (2D: m^2/s). `rate` is that of the state, unless given.
+/// Rows of u: -(p - p_0) dV/du, N. Row of p: rate V, m^3/s (2D: m^2/s). `rate`: default that of the state. `keep`: as
+/// in assembly::Term.
 assembly::Term make_volume_work(const assembly::Context& context, const VolumeCoupling& of, bool keep,
                                 std::optional<Real> rate = {});
 
-/// The rows of u alone.
+/// Rows of u only.
 assembly::Term make_volume_load(const assembly::Context& context, const VolumeCoupling& of, bool keep);
 
 }  // namespace sprekk::physics
