@@ -1,4 +1,4 @@
-// What scenes may ask of heat.
+// Checks of scenes with heat.
 #include "physics/comparison.hpp"
 #include "physics/entry_of_place.hpp"
 #include "physics/heat/temperatures.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 bool no_heat(const Comparison& c) { return !c.scene().heat && c.is_absent("Heat"); }
 
-/// What is of heat in a scene without it.
+/// Reports thermal entries in a scene without heat.
 void compare_without_heat(Comparison& c) {
   if (!no_heat(c)) return;
   const auto needs_heat = [&](const std::string& place) { c.fail(place, "needs the section \"Heat\""); };
@@ -35,7 +35,7 @@ void compare_rock(Comparison& c, const Material& rock) {
   }
 }
 
-/// Heat that no temperature and no capacity ties to a level has none, or any.
+/// Reports a problem whose temperature is determined neither by a prescribed temperature nor by heat storage.
 void compare_level(Comparison& c) {
   const auto& conditions = c.scene().boundary_conditions;
   const auto& regions = c.scene().regions;
@@ -52,7 +52,7 @@ void compare_level(Comparison& c) {
          "rock a \"volumetric heat capacity\"");
 }
 
-/// Whether what fills fractures stores heat.
+/// Returns whether the filling of a fracture stores heat.
 bool stores_in_fractures(Comparison& c) {
   const auto& scene = c.scene();
   if (!c.names().fractures || c.names().fractures->empty()) return false;
@@ -64,7 +64,7 @@ bool stores_in_fractures(Comparison& c) {
   });
 }
 
-/// The start counts where something changes with the temperature.
+/// Reports a missing initial temperature where heat storage, expansion or the fluid depends on it.
 void compare_start(Comparison& c) {
   const auto& scene = c.scene();
   if (scene.heat->initial_temperature || !c.is_sound("Heat")) return;
@@ -83,7 +83,7 @@ void compare_start(Comparison& c) {
   if (scene.flow && scene.heat->fluid != "constant") require("a fluid changes with the temperature");
 }
 
-/// What changes density and viscosity.
+/// Checks the entries for temperature-dependent density and viscosity.
 void compare_change(Comparison& c) {
   const auto& heat = *c.scene().heat;
   const auto of = [&](const std::string& entry, const std::string& what) { c.fail("Heat > \"" + entry + "\"", what); };

@@ -13,9 +13,9 @@ using assembly::Slot;
 
 namespace {
 
-/// What a fluid brings whose amount m in a fracture changes: T dm/dt, by the same rates, is taken from d(m T)/dt, which
-/// leaves q (T - T_old), q = now m_old + before (m_old - m_older), less what the step before stored. See
-/// assembly::Rates.
+/// Heat storage of the filling, whose amount m changes. Advection supplies T dm/dt; this part is subtracted from d(m
+/// T)/dt with the same rates, see assembly::Rates. The remaining term is q (T - T_old) with q = now m_old + before
+/// (m_old - m_older), minus the storage of the previous step.
 ///
 /// | symbol | shape                | unit           |                                            |
 /// | x      | 1                    | K              | T of the face                              |
@@ -193,7 +193,7 @@ class FractureHeat final : public assembly::Module {
   FractureHeatParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
   int temperature_ = -1, pressure_ = -1, widening_ = -1;  // blocks of face temperature, face pressure, widening
-  ConstView<Real*> aperture_, least_;                     // [local fracture face] a_0, its bound, m
+  ConstView<Real*> aperture_, least_;                     // [local fracture face] a_0, residual aperture, m
   ConstView<LocalIndex*> facet_;                          // [local fracture face]
   Conduction conduction_;
   Filling<expands ? 2 : 1> filling_;

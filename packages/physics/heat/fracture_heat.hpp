@@ -1,4 +1,4 @@
-// Energy balance of fractures: what they conduct along themselves and store.
+// Energy balance of fractures: conduction along them and heat storage.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -14,30 +14,32 @@
 namespace sprekk::physics {
 
 struct FractureHeatParameters {
-  /// Of one fracture face.
+  /// Thermal data of one fracture face.
   struct Face {
-    Real aperture;      ///< a_0, m
-    Real least;         ///< of the aperture, m
-    Real conductivity;  ///< of what fills it, W/(m K)
-    Real capacity;      ///< rho c of that at reference conditions, J/(m^3 K)
+    Real aperture;      ///< initial aperture a_0, m
+    Real least;         ///< residual aperture, m
+    Real conductivity;  ///< of the filling, W/(m K)
+    Real capacity;      ///< rho c of the filling at reference conditions, J/(m^3 K)
     Real at_start() const { return aperture > least ? aperture : least; }
   };
   std::vector<Face> faces = {};  ///< [local fracture face]
   FluxScheme scheme = FluxScheme::rt0;
-  base::Expression initial = 0;            ///< temperature at the start, K
-  std::optional<laws::Fluid> fluid = {};   ///< what fills it flows, with "face pressure"
-  base::Expression initial_pressure = 0;   ///< with a fluid, Pa
-  Real expansion = 0;                      ///< volumetric, of a fluid whose flow does not change, 1/K
-  std::optional<FluidChange> change = {};  ///< what T does to the fluid
-  bool widens = false;                     ///< the aperture grows by "widening" of PoroelasticCoupling
+  base::Expression initial = 0;            ///< initial temperature, K
+  std::optional<laws::Fluid> fluid = {};   ///< flowing filling, with "face pressure"
+  base::Expression initial_pressure = 0;   ///< initial pressure with a fluid, Pa
+  Real expansion = 0;                      ///< volumetric, 1/K, of a fluid whose flow does not depend on T
+  std::optional<FluidChange> change = {};  ///< effect of T on the fluid
+  bool widens = false;                     ///< adds "widening" of PoroelasticCoupling to the aperture
 };
 
-/// Adds to the rows of "face temperature", for a fracture face F with ridges i, of area A,
-///   sum_i q_i + A c m_old (T - T_old)/dt   and   -q_i on ridges
-/// where q_i is conducted, as in the hybrid form on the face, with a_0 times the conductivity, and m = a e is the
-/// volume of what fills it, at reference conditions, per area, e times the density of FluidResponse; that of the start
-/// of a step counts, as is exact where what flows in brings differences of temperature, see make_advection(). To the
-/// rows of "face pressure" of a fluid with the expansion beta it adds -A beta m_old (T - T_old)/dt. Output: "fracture
+/// Creates the module. For a fracture face F of area A, and for each of its ridges i, the rows of "face temperature"
+/// are
+///   sum_i q_i + A c m_old (T - T_old)/dt   and   -q_i.
+/// q_i is conduction in the hybrid form on the face, with the initial aperture times the conductivity. m = a e is the
+/// volume of the filling at reference conditions per area, with e multiplied by the density of FluidResponse. Using m
+/// of the start of the step is exact, because advection transports temperature differences, see make_advection().
+///
+/// With a fluid of expansion beta, the rows of "face pressure" receive -A beta m_old (T - T_old)/dt. Output: "fracture
 /// temperature" (faces, K).
 std::unique_ptr<assembly::Module> make_fracture_heat(mesh::Shape shape, FractureHeatParameters parameters);
 

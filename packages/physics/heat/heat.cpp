@@ -52,8 +52,8 @@ Properties<Real> expansion_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
       });
 }
 
-/// Of what fluid and grains gain in a cell that its pores do not, unless what the pores store is of a fluid that
-/// changes.
+/// Thermal expansion of fluid and grains minus that of the pores, by cell. The fluid contributes only if it is
+/// constant; otherwise the storage term contains its expansion.
 Properties<Real> expansion_of_pores(const Scene& scene, const mesh::Mesh& mesh) {
   const Real of_fluid = scene.heat->fluid == "constant" ? scene.heat->fluid_expansion : 0;
   return by_cell(
@@ -72,11 +72,11 @@ bool is_any(const mesh::Mesh& mesh, const Properties<Real>& property) {
   return base::on_any_rank(*mesh.comm, std::any_of(values.begin(), values.end(), [](Real v) { return v != 0; }));
 }
 
-/// Of local fracture faces. Collective.
+/// Thermal data of local fracture faces. Collective.
 std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   const auto apertures = start_apertures(setting);
-  const Real least = 1e-9 * mesh::largest_extent(mesh);  // so that ridges of closed ones have a temperature
+  const Real least = 1e-9 * mesh::largest_extent(mesh);  // ridges of closed fractures then conduct heat
   std::vector<FractureHeatParameters::Face> faces;
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
     for (std::size_t f = 0; f < apertures.size(); ++f) {
@@ -96,7 +96,7 @@ std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
   return faces;
 }
 
-/// The temperatures that a scene gives, which stresses follow from.
+/// Temperatures of a scene, for the scale of stresses.
 std::vector<GivenTemperature> given_temperatures(const Scene& scene, const mesh::Mesh& mesh) {
   std::vector<GivenTemperature> all;
   const auto number = [](const auto& names, const std::string& name) { return index_of(names, name); };
@@ -111,8 +111,8 @@ std::vector<GivenTemperature> given_temperatures(const Scene& scene, const mesh:
   return all;
 }
 
-/// The sources and fluxes that a scene gives, with what they make of the temperature over the size of the domain, if
-/// they last. Collective.
+/// Heat sources and fluxes of a scene, each with the stationary temperature change over the domain per unit.
+/// Collective.
 std::vector<GivenTemperature> given_rates(const Scene& scene, const mesh::Mesh& mesh,
                                           const Properties<laws::Mobility>& conductivity) {
   Real least = std::numeric_limits<Real>::infinity();
@@ -146,7 +146,7 @@ void add_fractures(const Setting& setting, const std::vector<FractureHeatParamet
   modules.push_back(make_fracture_heat(mesh.shape, std::move(fractures)));
 }
 
-/// What temperature does to stresses and to the fluid.
+/// Adds thermal stress and thermal expansion of the fluid.
 void add_expansion(const Setting& setting, std::vector<GivenTemperature> given, Modules& modules) {
   const auto& [scene, mesh, start] = setting;
   const auto initial = scene.heat->initial_temperature.value_or(0);
@@ -415,7 +415,7 @@ std::vector<std::string> Heat::warnings(const Setting& setting) {
   return all;
 }
 
-/// Rock and water are warmer than that; 0 may stand for a difference.
+/// Warns about temperatures below those of rock and water. The value 0 is accepted: it may denote a difference.
 std::vector<std::string> Heat::plausibility(const Setting& setting, const std::vector<Real>&) {
   constexpr Real coldest = 230;
   const auto& scene = setting.scene;
@@ -432,7 +432,7 @@ std::vector<std::string> Heat::plausibility(const Setting& setting, const std::v
 
 namespace {
 
-/// Outside of the table water is as at its end. Collective.
+/// Returns whether a temperature is outside of the water table. Collective.
 bool leaves_water(const mesh::Mesh& mesh, const std::vector<assembly::OutputField>& outputs) {
   bool outside = false;
   for (const auto& output : outputs)

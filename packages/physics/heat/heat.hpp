@@ -1,5 +1,4 @@
-// Heat in rock and fractures, conducted and carried by a fluid, and the stresses it makes: its entries of a scene and
-// its modules.
+// Heat in rock and fractures: conduction, advection by a fluid and thermal stress. Scene entries and modules.
 #pragma once
 
 #include "base/expression.hpp"
@@ -13,7 +12,7 @@
 
 namespace sprekk::physics {
 
-/// What a well of Flow puts in.
+/// Temperature of the fluid that a well of Flow injects.
 struct WellTemperature {
   base::Expression temperature = 0;
   void describe(base::Section& section);
@@ -21,40 +20,41 @@ struct WellTemperature {
 
 struct HeatSection {
   base::Expression source = 0;
-  std::optional<base::Expression> initial_temperature;  ///< needed where heat is stored, and where rock expands
-  std::optional<Real> fluid_capacity;                   ///< per volume, needed with Flow
+  std::optional<base::Expression> initial_temperature;  ///< required with heat storage, and with thermal expansion of
+                                                        ///< rock
+  std::optional<Real> fluid_capacity;                   ///< per volume, required with Flow
   Real fluid_expansion = 0;                             ///< volumetric
-  std::string fluid = "constant";                       ///< how the fluid of Flow changes with T
-  Real viscosity_decay = 0;                             ///< of an exponential one
-  Real reference_temperature = 293.15;                  ///< T_0, of the density and viscosity of Flow
+  std::string fluid = "constant";                       ///< dependence of the fluid of Flow on T
+  Real viscosity_decay = 0;                             ///< for fluid "exponential"
+  Real reference_temperature = 293.15;                  ///< T_0 for density and viscosity of Flow
   std::string scheme = "auto", advection = "upwind";
-  bool of_friction = false;                      ///< sliding fractures become warmer
-  std::map<std::string, WellTemperature> wells;  ///< by names of those of Flow
+  bool of_friction = false;                      ///< friction heats sliding fractures
+  std::map<std::string, WellTemperature> wells;  ///< by names of the wells of Flow
   void describe(base::Section& section);
-  /// What the temperature does to density and viscosity, if anything.
+  /// Effect of the temperature on density and viscosity; none: constant fluid.
   std::optional<FluidChange> fluid_change() const;
 };
 
 struct Heat : Physics<Heat> {
   struct Rock : Physics::Rock {
-    std::vector<base::Expression> thermal_conductivity;  ///< one value, or those of a tensor; of x, y, z
-    base::Expression heat_capacity = 0;                  ///< per volume; of x, y, z
-    base::Expression thermal_expansion = 0;              ///< linear; of x, y, z
+    std::vector<base::Expression> thermal_conductivity;  ///< one value, or tensor components; functions of x, y, z
+    base::Expression heat_capacity = 0;                  ///< per volume; function of x, y, z
+    base::Expression thermal_expansion = 0;              ///< linear; function of x, y, z
     void describe(base::Section& section);
-    bool conducts_uniformly() const;  ///< the conductivity does not depend on the place
-    /// K in Fourier's law q = -K grad T. Throws an Error where it is no positive definite tensor of that dimension.
+    bool conducts_uniformly() const;  ///< the conductivity is independent of the position
+    /// K in Fourier's law q = -K grad T. Throws an Error if K is not a positive definite tensor of dimension `dim`.
     laws::Mobility conductivity(int dim, const std::array<Real, 3>& x) const;
   };
 
-  /// Of what fills it.
+  /// Thermal properties of the filling.
   struct Joint : Physics::Joint {
-    base::Expression filling_conductivity = 0.6;            ///< that of water
-    std::optional<base::Expression> filling_heat_capacity;  ///< absent: that of the fluid of Flow, without one 0
+    base::Expression filling_conductivity = 0.6;            ///< default: water
+    std::optional<base::Expression> filling_heat_capacity;  ///< absent: that of the fluid of Flow; without a fluid 0
     void describe(base::Section& section);
   };
 
   struct Region : Physics::Region {
-    std::optional<base::Expression> temperature;  ///< at all times
+    std::optional<base::Expression> temperature;  ///< prescribed at all times
     void describe(base::Section& section);
     bool is_given() const { return temperature.has_value(); }
     std::vector<Prescribed> prescribed() const;
@@ -87,7 +87,7 @@ struct Heat : Physics<Heat> {
   static std::unique_ptr<MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static std::vector<Carried> carried(const Scene& scene);
   static std::string takes_friction_power(const Scene& scene);
-  /// What does not go with BDF2, empty: all does.
+  /// Name of the entry that is incompatible with BDF2; empty: none.
   static std::string needs_implicit_euler(const Scene& scene);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);

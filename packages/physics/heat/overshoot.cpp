@@ -13,8 +13,8 @@ namespace {
 
 using mesh::Vector;
 
-constexpr Real tolerance = 1e-3;         // of the span
-constexpr std::size_t most_times = 128;  // at which temperatures that depend on time are evaluated
+constexpr Real tolerance = 1e-3;         // relative to the range of given temperatures
+constexpr std::size_t most_times = 128;  // number of times at which time-dependent temperatures are evaluated
 
 struct Range {
   Real low = std::numeric_limits<Real>::infinity(), high = -low;
@@ -24,7 +24,7 @@ struct Range {
   }
 };
 
-/// Whether sources, heat fluxes and friction can heat or cool rock beyond all given temperatures.
+/// Sources, heat fluxes and friction that can heat or cool rock beyond all given temperatures.
 struct OtherHeat {
   bool warms = false, cools = false;
   void add(const base::Expression& inward, int sign) {
@@ -44,7 +44,7 @@ OtherHeat other_heat(const Scene& scene) {
   return other;
 }
 
-/// Calls see(x) with corners and centres of the faces or of the cells where a temperature is given.
+/// Calls see(x) with corners and centres of the faces or cells of a given temperature.
 template <class See>
 void for_each_place(const mesh::Mesh& mesh, const GivenTemperature& given, const See& see) {
   const auto is_in = [&](LocalIndex cell) { return given.region < 0 || mesh.cell_region[cell] == given.region; };
@@ -65,7 +65,7 @@ void for_each_place(const mesh::Mesh& mesh, const GivenTemperature& given, const
   }
 }
 
-/// On this rank, at these times.
+/// Range of the given temperatures on this rank at these times.
 Range given_range(const std::vector<GivenTemperature>& all, const mesh::Mesh& mesh, const std::vector<Real>& times) {
   Range range;
   for (const auto& given : all) {
@@ -80,7 +80,7 @@ Range given_range(const std::vector<GivenTemperature>& all, const mesh::Mesh& me
   return range;
 }
 
-/// Evenly chosen, the last one among them.
+/// At most most_times of the times at equal intervals, including the last one.
 std::vector<Real> some_of(const std::vector<Real>& times) {
   const std::size_t every = (times.size() + most_times - 1) / most_times;
   std::vector<Real> some;
@@ -89,11 +89,11 @@ std::vector<Real> some_of(const std::vector<Real>& times) {
 }
 
 struct Overshoot {
-  Real size, low, high;  // K, of the given temperatures
+  Real size, low, high;  // K; low and high of the given temperatures
   bool counts() const { return size > tolerance * (high - low) && size > 1e-9 * high; }
 };
 
-/// Collective.
+/// Overshoot over all ranks. Collective.
 Overshoot overshoot(const mesh::Mesh& mesh, const OtherHeat& other, const Range& given, const Range& found) {
   const auto all =
       base::max_over_ranks(*mesh.comm, std::array<Real, 4>{given.high, -given.low, found.high, -found.low});
@@ -115,7 +115,8 @@ std::string overshoot_warning(const Setting& setting, const std::vector<Real>& t
   auto beyond = overshoot(mesh, other, given_range(given, mesh, {times.back()}), found);
   if (beyond.counts()) beyond = overshoot(mesh, other, given_range(given, mesh, some_of(times)), found);
   if (!beyond.counts()) return "";
-  const Real size = std::pow(10, std::floor(std::log10(beyond.size)));  // few different texts, so that few are printed
+  const Real size = std::pow(10, std::floor(std::log10(beyond.size)));  // rounded, so that few different messages are
+                                                                        // printed
   return fmt::format(
       "{}: temperatures are more than {:.3g} K beyond the given ones, {:.6g} to {:.6g} K, by the error of the mesh "
       "or of the steps: take finer cells, or \"implicit Euler\" where steps are long",

@@ -1,4 +1,4 @@
-// Temperatures beyond those that a scene gives.
+// Detection of temperatures outside of the range of the scene.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -10,10 +10,10 @@
 
 namespace sprekk::physics {
 
-/// A warning if temperatures of a state are beyond all those that the scene has given until now (initial, on
-/// boundaries, in regions, of wells) by more than 1e-3 of their span; else empty. By the maximum principle no exact
-/// solution is beyond them on the side to which no source, heat flux or friction heats or cools; only that side is
-/// compared. `times`: the start and the ends of all steps until now, s, not empty. Collective.
+/// Warning about temperatures outside of the range of all values given so far: initial values, boundaries, regions and
+/// wells. The tolerance is 1e-3 of this range. Empty if there is no overshoot. By the maximum principle, exact
+/// solutions stay in the range unless sources, heat fluxes or friction heat or cool the rock. Only bounds that these
+/// cannot exceed are checked. `times`: start time and end times of all steps so far, s, not empty. Collective.
 std::string overshoot_warning(const Setting& setting, const std::vector<Real>& times,
                               const std::vector<GivenTemperature>& given,
                               const std::vector<assembly::OutputField>& outputs);

@@ -1,4 +1,4 @@
-// The temperatures that a scene gives.
+// Temperatures given in a scene.
 #pragma once
 
 #include "physics/heat/water.hpp"
@@ -10,7 +10,7 @@ namespace sprekk::physics {
 
 inline bool is_water(Real T) { return T >= coldest_water && T <= warmest_water; }
 
-/// Calls see(place in the scene, temperature) for all that a scene gives.
+/// Calls see(location in the scene, temperature) for all temperatures of a scene.
 template <class See>
 void for_each_temperature(const Scene& scene, const See& see) {
   if (scene.heat->initial_temperature) see("Heat > \"initial temperature\"", *scene.heat->initial_temperature);

@@ -77,7 +77,7 @@ class ThermalStress final : public assembly::Module {
     for (const auto& term : terms_) term.add_jacobian(state, J);
   }
 
-  /// What the largest change of temperature makes of a stress.
+  /// Stress scale: thermal stress due to the largest change of temperature.
   assembly::Scales loads(Real t) const override {
     Real change = spread_;
     const auto see = [&](const GivenTemperature& given, LocalIndex cell, const mesh::Vector& x) {
@@ -100,7 +100,7 @@ class ThermalStress final : public assembly::Module {
   }
 
  private:
-  /// 3 K alpha_T, Pa/K
+  /// Returns 3 K alpha_T, Pa/K.
   Real stiffness(LocalIndex cell) const {
     const auto& law = parameters_.elasticity.of_cell(*mesh_, cell);
     return (3 * law.lambda + 2 * law.G) * parameters_.expansion.of_cell(*mesh_, cell);
@@ -125,12 +125,12 @@ class ThermalStress final : public assembly::Module {
   }
 
   ThermalStressParameters parameters_;
-  bool fractures_, tips_;  // the mesh has some; enriched ones
+  bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
   int temperature_ = -1;
   std::vector<Real> reference_;  // [local cell] T_0, K
-  Real largest_ = 0;             // 3 K alpha_T, Pa/K
-  Real spread_ = 0;              // of T_0, K
+  Real largest_ = 0;             // largest 3 K alpha_T, Pa/K
+  Real spread_ = 0;              // range of T_0, K
   std::vector<assembly::Term> terms_;
 };
 
@@ -147,7 +147,8 @@ struct Expansion {
   Real rate = 0;
 
   KOKKOS_INLINE_FUNCTION void residual(int c, const Real (&x)[1], Real (&r)[1]) const {
-    r[0] = c < static_cast<int>(kept.extent(0)) ? -room(c) * rate * (x[0] - kept(c, 0)) : 0;  // else another rank's
+    r[0] = c < static_cast<int>(kept.extent(0)) ? -room(c) * rate * (x[0] - kept(c, 0)) : 0;  // else cell of another
+                                                                                              // rank
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int c, const Real (&)[1], Real (&J)[1][1]) const { J[0][0] = -room(c) * rate; }
 };

@@ -19,7 +19,7 @@ Real water_density(Real T) {
 
 Real water_viscosity(Real T) { return water_viscosity(T, water_density(T)); }
 
-/// Equations (11) and (12) of R12-08.
+/// Evaluates equations (11) and (12) of R12-08.
 Real water_viscosity(Real T, Real density) {
   const Real t = T / critical_temperature;
   const Real dilute = 100 * std::sqrt(t) / (1.67752 + 2.20462 / t + 0.6366564 / (t * t) - 0.241605 / (t * t * t));

@@ -15,13 +15,13 @@ using assembly::Slot;
 
 namespace {
 
-/// A known pressure p of what has the volume V.
+/// Forces of a prescribed pressure p on a volume V.
 ///
 /// | symbol   | shape             | unit |                              |
 /// | x        | displacements [m] | m    | unknowns                     |
 /// | r        | forces [m]        | N    | -p dV/du                     |
 /// | volume   | [entity, m]       | m^2  | dV/du                        |
-/// | of       | [entity]          | -    | which pressure               |
+/// | of       | [entity]          | -    | number of the pressure       |
 /// | pressure | [number]          | Pa   |                              |
 template <class... Displacements>
 struct Push {
@@ -37,7 +37,7 @@ struct Push {
   }
 };
 
-/// The push of the pressures of rock, or of fractures, over one loop.
+/// Forces of the pressures of rock or fractures, over one loop.
 class Part {
  public:
   explicit Part(bool is_of_rock) : is_of_rock(is_of_rock) {}
@@ -46,7 +46,7 @@ class Part {
 
   virtual void set(const ConstView<Real*>& pressure) = 0;
   virtual void add_residual(const assembly::State& state, const assembly::Rows& r) const = 0;
-  /// [number of the pressure] m^3 (2D: m^2)
+  /// Adds the volumes, [number of the pressure] m^3 (2D: m^2).
   virtual void add_volumes(const assembly::State& state, const View<Real*>& volumes) const = 0;
 };
 
@@ -155,7 +155,7 @@ class Given final : public GivenPressure {
   assembly::Scales loads(Real) const override { return {{"stress", largest_}}; }
 
  private:
-  /// V_K of owned cells, or W_f of owned fracture faces.
+  /// Computes V_K of owned cells, or W_f of owned fracture faces.
   std::vector<Real> volumes(const assembly::State& state, bool of_rock) const {
     const View<Real*> sums("volumes", of_rock ? mesh_->n_cells() : mesh_->n_fracture_faces());
     for (const auto& part : parts_)
@@ -171,9 +171,9 @@ class Given final : public GivenPressure {
   }
 
   GivenPressureParameters parameters_;
-  bool fractures_, tips_;  // the mesh has some; enriched ones
+  bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
-  Real largest_ = 0;  // on this rank, Pa
+  Real largest_ = 0;  // largest pressure on this rank, Pa
   std::vector<std::unique_ptr<Part>> parts_;
 };
 

@@ -1,4 +1,4 @@
-// The pressure of a fluid that is known, in rock and in fractures.
+// Prescribed fluid pressure in rock and fractures.
 #pragma once
 
 #include "assembly/system.hpp"
@@ -10,25 +10,27 @@
 namespace sprekk::physics {
 
 struct GivenPressureParameters {
-  Properties<Real> biot;  ///< of cells, Biot's coefficient
+  Properties<Real> biot;  ///< [cell] Biot's coefficient
   Real initial = 0;       ///< pressure of the initial state, Pa
 };
 
-/// Adds -p_K dV_K/du - p_f dW_f/du to the rows of all displacements, V_K and W_f as PoroelasticCoupling has them: p is
-/// what pressures are above those of the initial state. Outputs of the present state: "gained pore volume" V_K (cells,
-/// m^3; 2D: m^2) and "widening" W_f/|f| (fracture faces, m).
+/// Module of a prescribed pressure. It adds -p_K dV_K/du - p_f dW_f/du to the rows of all displacements, with V_K and
+/// W_f of PoroelasticCoupling. p is the pressure minus that of the initial state. Outputs of the present state: "gained
+/// pore volume" V_K (cells, m^3; 2D: m^2) and "widening" W_f/|f| (fracture faces, m).
 class GivenPressure : public assembly::Module {
  public:
+  /// Pressure of the initial state, Pa.
   virtual Real initial() const = 0;
-  /// Less initial(), [local cell], [local fracture face], Pa, from the next step on; zero at first.
+  /// Sets the pressures minus initial(), [local cell], [local fracture face], Pa, from the next step on. Default: zero.
   virtual void set(const std::vector<Real>& rock, const std::vector<Real>& fractures) = 0;
 };
 
 std::unique_ptr<GivenPressure> make_given_pressure(const mesh::Mesh& mesh, GivenPressureParameters parameters);
 
-/// Of a scene whose `host_fluid` is given: the pressures of the fluid in owned cells and fracture faces, Pa, in the
-/// order of model::FieldView, from the next step on. The outputs "gained pore volume" and "widening" say what room it
-/// makes. No part of what Model::save() keeps: to be given again after restore(). Collective.
+/// Sets the fluid pressures of a scene with `host_fluid`, in owned cells and fracture faces, Pa, in the order of
+/// model::FieldView, from the next step on. The outputs "gained pore volume" and "widening" give the resulting volume
+/// changes. Model::save() does not save the pressures: set them again after restore(). Throws an Error if the scene has
+/// no prescribed pressure, if a size is wrong, or if a value is not finite. Collective.
 void set_fluid_pressure(assembly::System& system, const std::vector<Real>& rock, const std::vector<Real>& fractures);
 
 }  // namespace sprekk::physics

@@ -17,7 +17,7 @@ using assembly::Slot;
 
 namespace {
 
-/// A fluid that pushes a side of a fracture face, and the share of the side in how far the face has opened.
+/// Fluid pressure on one side of a fracture face, and the contribution of this side to the widening of the face.
 ///
 /// | symbol    | shape                       | unit     |                                                     |
 /// | x         | displacements [m], p, b     | m, Pa, m | unknowns                                            |
@@ -124,10 +124,10 @@ class PoroelasticCoupling final : public assembly::Module {
     put_initial(*mesh_, parameters_.stabilisation.initial, x[pressures_[0]], x[pressures_[1]]);
   }
 
-  /// Rates count from the state that is there, also in cells that are new.
+  /// Updates the history in the present state, also in new cells.
   void take_over(assembly::State& state) const override { commit(state); }
 
-  /// What was in the rows of pressures, times dt.
+  /// Saves the storage terms of pressure rows, multiplied by dt.
   void commit(assembly::State& state) const override {
     assembly::Rows volumes;
     for (const auto& x : state.x) volumes.emplace_back("volumes", x.extent(0));
@@ -161,12 +161,13 @@ class PoroelasticCoupling final : public assembly::Module {
   void add_tips(const assembly::Context& context);
 
   PoroelasticCouplingParameters parameters_;
-  bool fractures_, tips_;  // the mesh has some; enriched ones
+  bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
   std::array<int, 2> pressures_{};  // blocks of pressure, face pressure
-  ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: what fixes the stress, of V_K
-  std::vector<assembly::Term> rates_, openings_;  // the former in proportion to the rate of the state
-  assembly::Term stabilisation_;                  // one of them
+  ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: fixed-stress Schur complement of
+                                    // V_K
+  std::vector<assembly::Term> rates_, openings_;  // rates_ are proportional to the rate of the state
+  assembly::Term stabilisation_;                  // contained in rates_
 };
 
 void PoroelasticCoupling::bind(const assembly::Context& context) {

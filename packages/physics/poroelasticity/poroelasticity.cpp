@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* biot_name = "Biot coefficient";
 
-/// Biot's coefficient of cells. Collective; throws on all ranks.
+/// Biot's coefficients of cells. Throws an Error on all ranks. Collective.
 Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
   Properties<Real> values;
   base::collectively(*mesh.comm, [&] {
@@ -27,7 +27,7 @@ std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::
   return make_poroelastic_coupling(mesh, {.biot = biot(scene, mesh), .stabilisation = stabilisation(scene, mesh)});
 }
 
-/// The pressure that a host gives.
+/// Creates the module of a pressure prescribed by the host.
 std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mesh& mesh) {
   return make_given_pressure(mesh, {.biot = biot(scene, mesh), .initial = scene.host_fluid->initial_pressure});
 }

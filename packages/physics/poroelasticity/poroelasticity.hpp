@@ -1,4 +1,4 @@
-// What flow and mechanics are to each other where a scene has both.
+// Coupling of flow and mechanics in scenes with both.
 #pragma once
 
 #include "physics/flow/stabilisation.hpp"
@@ -19,7 +19,7 @@ struct Poroelasticity : Physics<Poroelasticity> {
   static std::vector<std::string> warnings(const Setting& setting);
 };
 
-/// Of the pressure of a fluid in rock that deforms; empty where there is none. Collective.
+/// Stabilisation of the fluid pressure in deforming rock; empty without poroelasticity. Collective.
 Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics
