@@ -1,4 +1,4 @@
-// Forces between the two sides of a fracture face and the rock behind them.
+// Forces between one side of a fracture face and the adjacent rock.
 #pragma once
 
 #include "assembly/reference_cell.hpp"
@@ -6,27 +6,28 @@
 
 namespace sprekk::physics {
 
-/// The balance of one side of one fracture face; everything in it is constant. u: nodal displacements, or those that
-/// enrich them around tips, N_a then being psi_a.
+/// Balance of one side of a fracture face; all coefficients are constant. u: nodal displacements, or the tip
+/// displacements with psi_a instead of N_a.
+///
 ///
 /// | symbol    | shape            | unit |                                                            |
 /// | x         | u [node, dim], beta [dim], lambda [dim] | m, m, Pa | unknowns                       |
 /// | r         | displacement rows [node, dim], side bubble rows [dim] | N | forces                    |
 /// | coupling  | [side, dim, node dim] | N/m  | integral sigma(N_a e_j) : grad(b e_i)                 |
 /// | stiffness | [side]           | N/m  | alpha                                                      |
-/// | push      | [side, node]     | m^2  | s |f| times the node's share in the mean over the face     |
+/// | push      | [side, node]     | m^2  | s |f| times the node's share in the face mean; s: sign of the side |
 /// | bubble    | [side]           | m^2  | s |f| mean(b)                                              |
 /// | frame     | [side, dim, dim] | -    | rows n, t1[, t2]                                           |
 /// | force     | [side, dim]      | N    | load on the bubble: integral F_i b, initial stress         |
-/// | nodal     | [side, node dim] | N    | load on the nodes: initial stress; empty without           |
-/// | pressure  | [side]           | Pa   | of the fluid; empty without                                |
+/// | nodal     | [side, node dim] | N    | load on the nodes: initial stress; empty: none             |
+/// | pressure  | [side]           | Pa   | fluid pressure; empty: none                                |
 template <mesh::Shape shape>
 struct BalancedSide {
   using Cell = assembly::ReferenceCell<shape>;
   static constexpr int dim = Cell::dim, n = Cell::n_nodes;
   using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>, assembly::Slot<1, dim>>;
   using Rows = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<1, dim>>;
-  static constexpr int beta = n * dim, lambda = beta + dim;  // where they start in x
+  static constexpr int beta = n * dim, lambda = beta + dim;  // offsets in x
   static constexpr bool couples(int row, int column) { return row > 0 || column > 0; }
 
   View<Real***> coupling, frame;

@@ -1,4 +1,4 @@
-// How stiff the bubble of a fracture face is.
+// Stiffness of the face bubble.
 #pragma once
 
 #include "assembly/geometry.hpp"
@@ -9,8 +9,8 @@
 
 namespace sprekk::physics {
 
-/// The largest eigenvalue of B_ij = integral sigma(b e_i) : grad(b e_j) over a cell, for the face function b of one of
-/// its faces, N/m.
+/// Largest eigenvalue of B_ij = integral sigma(b e_i) : grad(b e_j) over a cell, N/m, for the face function b of one of
+/// its faces. Throws an Error if the eigenvalue solver fails.
 template <mesh::Shape shape>
 Real bubble_stiffness(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const laws::Elasticity& law) {
   using Cell = assembly::ReferenceCell<shape>;

@@ -17,13 +17,13 @@ struct BoundaryTraction {
   int boundary;
   std::vector<base::Expression> value = {};       ///< t, in global components; empty: none
   std::optional<base::Expression> pressure = {};  ///< p
-  int region = -1;                                ///< only on faces of cells of this region; -1: all
+  int region = -1;                                ///< only faces of cells of this region; -1: all
 
   bool holds(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face) const {
     return face.boundary == boundary && (region < 0 || mesh.cell_region[face.cell] == region);
   }
   bool constant_in_time() const;
-  /// At points x of a face, component i: at(i, x, t).
+  /// Returns a function at(i, x, t) with component i of the traction at points x of a face.
   auto on(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face) const {
     auto n = mesh::area_vector(mesh::face_corners(mesh, face.cell, face.local_face));
     const Real area = mesh::norm(n);
@@ -42,14 +42,16 @@ struct BulkMomentumParameters {
   bool keeps_stress = false;  ///< see make_bulk_momentum()
 };
 
-/// Declares the unknown "displacement" (nodes, m) and adds to its rows, with test function v,
-///   integral (sigma_0 + sigma(u)) : grad v - F . v  -  boundary integral t . v                     Wollmann (2024),
-///   (4), (5)
-/// With `keeps_stress` the stress of cells goes on where a system takes over the state of one with other constants or
-/// without these cells: the histories "carried forces" [cell, node dim] of the nodes of a cell, N, and "carried stress"
-/// [cell, 6] at its centre, Pa, are what the stress was there less what it would be by the present constants.
-/// Outputs: displacement (nodes), stress of the nodal displacement, with sigma_0, at cell centres (XX, YY, ZZ, XY, YZ,
-/// XZ; Pa).
+/// Creates the module that declares the unknown "displacement" (nodes, m). With the test function v its rows are,
+/// Wollmann (2024), (4), (5),
+///   integral (sigma_0 + sigma(u)) : grad v - F . v  -  boundary integral t . v.
+/// With `keeps_stress` the stress of cells is continuous when a system takes over a state with other elastic constants,
+/// or without these cells. Two history variables store the difference between this stress and that of the present
+/// constants: "carried forces" [cell, node dim] on the nodes of a cell, N, and "carried stress" [cell, 6] at its
+/// centre, Pa.
+///
+/// Outputs: displacement (nodes), and stress of the nodal displacement including sigma_0 at cell centres (XX, YY, ZZ,
+/// XY, YZ, XZ; Pa).
 std::unique_ptr<assembly::Module> make_bulk_momentum(mesh::Shape shape, BulkMomentumParameters parameters);
 
 }  // namespace sprekk::physics

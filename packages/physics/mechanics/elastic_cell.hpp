@@ -1,4 +1,4 @@
-// Linear elasticity in one cell, as a local operator over the cells.
+// Linear elasticity in one cell, as a local operator.
 #pragma once
 
 #include "assembly/cell_nodes.hpp"
@@ -9,7 +9,7 @@ namespace sprekk::physics {
 
 using mesh::Shape;
 
-/// r = integral sigma(u) : grad N over one cell.
+/// Elastic forces r = integral sigma(u) : grad N over one cell.
 ///
 /// | symbol   | shape            | unit |                                   |
 /// | x        | [node, dim]      | m    | displacement of the cell's nodes  |
@@ -30,8 +30,8 @@ struct ElasticCell {
   ConstView<int*> law;
   ConstView<Real[n][n][dim][dim]> reference = reference_products();
 
-  /// Calls add(volume, g) at the quadrature points of a cell: the volume that the point stands for and the gradients in
-  /// space of the shape functions.
+  /// Calls add(volume, g) at the quadrature points of a cell, with the volume of the point and the spatial gradients of
+  /// the shape functions.
   template <class Add>
   KOKKOS_INLINE_FUNCTION void for_each_point(int cell, const Add& add) const {
     Real X[n][dim];
@@ -78,7 +78,8 @@ struct ElasticCell {
     });
   }
 
-  /// Calls use(a, b, M) for b >= a with M_ij = integral d_i N_a d_j N_b; blocks (a, b) of `work` are free after it.
+  /// Calls use(a, b, M) for b >= a with M_ij = integral d_i N_a d_j N_b. Block (a, b) of `work` may be overwritten by
+  /// `use`.
   template <class Use>
   KOKKOS_INLINE_FUNCTION void for_each_product(int cell, Real (&work)[n * dim][n * dim], const Use& use) const {
     Real X[n][dim], M[dim][dim];
@@ -114,7 +115,7 @@ struct ElasticCell {
     }
   }
 
-  /// The same for an affine map of the reference cell.
+  /// Does the same for an affine map of the reference cell.
   template <class Use>
   KOKKOS_INLINE_FUNCTION void for_each_affine_product(const Real (&X)[n][dim], const Use& use) const {
     Real xi[dim], dN[n][dim], half[dim][dim], M[dim][dim];
@@ -137,7 +138,7 @@ struct ElasticCell {
       }
   }
 
-  /// [node, node, component, component] integral of dN_a/dxi_k dN_b/dxi_l over the reference cell.
+  /// Integrals of dN_a/dxi_k dN_b/dxi_l over the reference cell, [node, node, component, component].
   static View<Real[n][n][dim][dim]> reference_products() {
     const View<Real[n][n][dim][dim]> products("reference products");
     const auto host = Kokkos::create_mirror_view(products);

@@ -1,4 +1,4 @@
-// The traction rows of a fracture face, and the rows that take the power of its friction.
+// Traction rows of a fracture face, and the rows that receive the power of its friction.
 #pragma once
 
 #include "assembly/slots.hpp"
@@ -9,14 +9,14 @@
 
 namespace sprekk::physics {
 
-/// The joint law on one fracture face with n nodes on each side.
+/// Joint law on one fracture face with n nodes on each side.
 ///
 /// | symbol       | shape                                                    | unit |                              |
 /// | x            | u [minus then plus node, dim], beta [2 dim], lambda [dim] | m, m, Pa | unknowns                |
 /// |              | q [minus then plus node, dim], with tips                 | m    | see tip_enrichment.hpp       |
 /// | r            | [dim]                                                    | Pa   | R(w, lambda)                 |
-/// | points       |                                                          |      | laws of the faces            |
-/// | share        | [face, node of a side]                                   | -    | node's part of the face mean |
+/// | points       |                                                          |      | joint laws of the faces      |
+/// | share        | [face, node of a side]                                   | -    | node's share in the face mean |
 /// | tip_share    | [face, minus then plus node]                             | -    | face mean of psi; with tips  |
 /// | bubble_mean  | [face]                                                   | -    | mean(b)                      |
 /// | rest         | [face, dim]                                              | m    | w_0; empty: zero             |
@@ -29,14 +29,14 @@ struct JointFace {
       assembly::Slots<assembly::Slot<2 * n, dim>, assembly::Slot<1, 2 * dim>, assembly::Slot<1, dim>, More...>;
   using Columns = std::conditional_t<tips, Slots<assembly::Slot<2 * n, dim>>, Slots<>>;
   using Rows = assembly::Slots<assembly::Slot<1, dim>>;
-  static constexpr int beta = 2 * n * dim, lambda = beta + 2 * dim, q = lambda + dim;  // where they start in x
+  static constexpr int beta = 2 * n * dim, lambda = beta + 2 * dim, q = lambda + dim;  // offsets in x
 
   JointPoints<dim> points;
   ConstView<Real**> share, tip_share;
   ConstView<Real*> bubble_mean;
   ConstView<Real**> rest = {};
 
-  /// w = mean of R (u+ - u-) over the face.
+  /// Computes the jump w = mean of R (u+ - u-) over the face.
   KOKKOS_INLINE_FUNCTION void jump(int f, const Real (&x)[Columns::size], Real (&w)[dim]) const {
     Real global[dim];
     for (int i = 0; i < dim; ++i) {
@@ -70,7 +70,7 @@ struct JointFace {
     points.residual(f, w, borne, r);
   }
 
-  /// dR/dx = dR/dw dw/dx + dR/dlambda: the law is differentiated in (w, lambda), w is linear in x.
+  /// Computes dR/dx = dR/dw dw/dx + dR/dlambda. The law is differentiated in (w, lambda); w is linear in x.
   KOKKOS_INLINE_FUNCTION void jacobian(int f, const Real (&x)[Columns::size], Real (&J)[dim][Columns::size]) const {
     Real w[dim], borne[dim], dR[dim][2 * dim];
     jump(f, x, w);
@@ -79,11 +79,11 @@ struct JointFace {
     for (int k = 0; k < dim; ++k) chain(f, dR[k], J[k]);
   }
 
-  /// From the derivatives in w and lambda those in x.
+  /// Computes the derivatives in x from those in w and lambda.
   KOKKOS_INLINE_FUNCTION void chain(int f, const Real (&derivatives)[2 * dim], Real (&row)[Columns::size]) const {
     for (int i = 0; i < dim; ++i) {
       row[lambda + i] = derivatives[dim + i];
-      Real by_jump = 0;  // derivative in component i of the global jump
+      Real by_jump = 0;  // derivative by component i of the global jump
       for (int l = 0; l < dim; ++l) by_jump += derivatives[l] * points.frame(f, l, i);
       for (int a = 0; a < n; ++a) {
         row[a * dim + i] = -share(f, a) * by_jump;
@@ -102,7 +102,7 @@ struct JointFace {
   }
 
  private:
-  /// Sum of the sizes of the terms of w: rounding errors of w are in proportion to it.
+  /// Returns the sum of the absolute terms of w, to which the rounding error of w is proportional.
   KOKKOS_INLINE_FUNCTION Real size_of_terms(int f, const Real (&x)[Columns::size]) const {
     const auto size = [](Real value) { return value < 0 ? -value : value; };
     Real sum = 0;
@@ -118,11 +118,12 @@ struct JointFace {
   }
 };
 
-/// The power that plastic slip of a face dissipates, taken from a row that stores it: r = -A/dt work, see
-/// JointPoints::work.
+/// Power dissipated by plastic slip of a face, a source of a row of stored energy: r = -A/dt work, see
+/// JointPoints::work().
+///
 ///
 /// | symbol | shape           | unit |                    |
-/// | x      | as of JointFace |      |                    |
+/// | x      | as in JointFace |      |                    |
 /// | r      | 1               | W    | (2D: W/m)          |
 /// | area   | [face]          | m^2  | A                  |
 /// | rate   |                 | 1/s  | of assembly::State |

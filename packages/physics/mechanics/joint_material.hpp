@@ -1,4 +1,4 @@
-// The entries of a material that say how a joint deforms, slides and closes.
+// Material entries for the deformation, slip and closure of a joint.
 #pragma once
 
 #include "base/expression.hpp"
@@ -16,50 +16,50 @@ struct HydraulicAperture;
 
 namespace sprekk::physics {
 
-struct JointParameters;  // every scene includes this, and is not compiled again for a new law of joints
+struct JointParameters;  // declared only: a new joint law does not recompile all users of scenes
 
-/// A joint's laws by their names, with the values of their entries; see laws/joint_kinds.hpp. Every number may be an
-/// expression of x, y, z.
+/// Names of the joint laws with the values of their entries, see laws/joint_kinds.hpp. Every value may be an expression
+/// of x, y, z.
 struct JointMaterial {
   using Value = base::Expression;
   using Point = std::array<Real, 3>;
 
-  /// Kinds; at first the first ones of their lists.
+  /// Names of the laws. Default: the first law of each list.
   std::string tangential_elasticity, friction, dilation, closure, bond, damage, damage_driver, hydraulic_aperture;
 
   std::optional<Value> tangential_stiffness, friction_coefficient, friction_angle, dilation_angle, maximum_closure,
       normal_stiffness;
-  std::map<std::string, std::optional<Value>> more;  ///< of all other entries of kinds, by their names
+  std::map<std::string, std::optional<Value>> more;  ///< [name] all other entries of laws
   Value initial_gap = 0, initial_aperture = 0;
-  Real strength_reduction = 1;  ///< F: friction and bond bear 1/F of what they would
+  Real strength_reduction = 1;  ///< F: divides the friction bound and the bond strength
 
   JointMaterial();
-  std::optional<Value>& entry(const std::string& name);  ///< of a kind, e.g. "friction angle"
+  std::optional<Value>& entry(const std::string& name);  ///< entry of a law, e.g. "friction angle"
   const std::optional<Value>& entry(const std::string& name) const;
 
-  /// The entries of the kinds that are named; of all kinds, where it is not known yet which the material has.
+  /// Declares the entries of the selected laws, or of all laws if the selection is not known yet.
   void describe(base::Section& section, bool of_all_kinds);
-  /// Reports what entries tell together, after the last entry of a section without errors.
+  /// Reports inconsistent entries. Called after the last entry of a section without errors.
   void compare_entries(base::Section& section) const;
-  /// What is missing for a joint of rock that deforms, as pairs (entry, what is wrong), the entry empty if there are
-  /// several that would do; or for the laws of one role alone.
+  /// Missing entries of a joint of deformable rock, as pairs (entry, message). The entry is empty if one of several
+  /// would suffice. `role`: restricts the result to one law, e.g. "friction".
   std::vector<std::array<std::string, 2>> missing(const std::string& role = "") const;
-  /// The laws that it cannot have in 3D, as pairs (entry, what is wrong).
+  /// Laws that are not available in 3D, as pairs (entry, message).
   std::vector<std::array<std::string, 2>> only_in_2d() const;
-  bool is_uniform() const;  ///< no value depends on the place
-  /// The laws at a point. Throws an Error that names the entry, the value and the point where a value is out of range.
+  bool is_uniform() const;  ///< no value depends on the position
+  /// Laws at a point. Throws an Error with entry, value and point if a value is out of range.
   JointParameters joint(const Point& x) const;
-  void check(const Point& x) const;  ///< throws the same
-  /// The hydraulic aperture by the mechanical one at a point. Throws the same.
+  void check(const Point& x) const;  ///< throws the same errors
+  /// Hydraulic aperture as a function of the mechanical aperture, at a point. Throws the same errors.
   laws::HydraulicAperture walls(const Point& x) const;
 
-  /// How much faster than the compression the bound on the shear traction rises, by the law's derivative.
+  /// Slope of the shear bound as a function of the compression, from the derivative of the law.
   struct Slope {
-    Real largest;   ///< for compressions between two
-    bool constant;  ///< the same for all of them
-    Real up_to;     ///< the largest of these compressions at which it exceeds 1, Pa; 0: none
+    Real largest;   ///< largest slope between two compressions
+    bool constant;  ///< the slope is constant between them
+    Real up_to;     ///< largest of these compressions with a slope above 1, Pa; 0: none
   };
-  /// Nothing if friction is not complete or depends on the place.
+  /// Slope of the friction bound; none if friction is incomplete or depends on the position.
   std::optional<Slope> friction_slope(Real least_compression, Real largest_compression) const;
 };
 

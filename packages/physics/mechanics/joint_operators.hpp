@@ -1,4 +1,4 @@
-// The kernels of the traction rows over all fracture faces of a mesh.
+// Kernels of the traction rows over all fracture faces of a mesh.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -9,30 +9,31 @@
 
 namespace sprekk::physics {
 
-/// Gathers the unknowns of fracture faces, calls the joint laws and scatters, for the shape of the mesh's faces.
-/// `points` has the laws and the history that a call uses.
+/// Gathers the unknowns of fracture faces, evaluates the joint laws and scatters the results, for one face shape.
+/// `points`: laws and history variables of a call.
 template <int dim>
 class JointOperators {
  public:
   virtual ~JointOperators() = default;
 
-  /// R(w, lambda) of each owned face.
+  /// Adds R(w, lambda) of each owned face, and its derivatives.
   virtual void add_residual(const JointPoints<dim>& points, const assembly::State& state,
                             const assembly::Rows& r) const = 0;
   virtual void add_jacobian(const JointPoints<dim>& points, const assembly::State& state, fields::BlockMatrix& J) = 0;
 
-  /// The power of friction, see SlidingFace, taken from the rows that store it.
+  /// Adds the power of friction, see SlidingFace, to the rows that store it, and its derivatives.
   virtual void add_power(const JointPoints<dim>& points, const assembly::State& state,
                          const assembly::Rows& r) const = 0;
   virtual void add_power_jacobian(const JointPoints<dim>& points, const assembly::State& state,
                                   fields::BlockMatrix& J) = 0;
 
-  /// [owned face], on the device
+  /// Results of all owned faces, on the device.
   virtual View<JointPoint<dim>*> evaluate(const JointPoints<dim>& points, const assembly::State& state) const = 0;
 };
 
-/// `fields`: blocks of displacement, side bubble, traction and, of a mesh with enriched tips, tip displacement.
-/// `power_to`: block whose rows take the power of friction; -1: none. `rest`: w_0 [owned face, dim], m; empty: zero.
+/// Creates the kernels. `fields`: blocks of displacement, side bubble, traction and, with enriched tips, tip
+/// displacement. `power_to`: block that receives the power of friction; -1: none. `rest`: w_0 [owned face, dim], m;
+/// empty: zero.
 template <int dim>
 std::unique_ptr<JointOperators<dim>> make_joint_operators(const assembly::Context& context,
                                                           const std::vector<int>& fields, int power_to,

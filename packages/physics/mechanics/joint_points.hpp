@@ -1,4 +1,4 @@
-// The joint laws at the centres of fracture faces, apart from the mesh: compiled once, for all shapes of cells.
+// Joint laws at the centres of fracture faces, independent of the mesh: compiled once for all cell shapes.
 #pragma once
 
 #include "base/view.hpp"
@@ -7,7 +7,8 @@
 
 namespace sprekk::physics {
 
-/// Jump, traction, residual, last plastic jump, state and constant of a face; the share of rounding in the jump, m.
+/// Jump, traction, residual, last plastic jump, contact state and augmentation constant of a face. `rounding`: rounding
+/// error of the jump, m.
 template <int dim>
 struct JointPoint {
   Real w[dim], traction[dim], R[dim], p_old[dim - 1];
@@ -15,29 +16,29 @@ struct JointPoint {
   Real constant, rounding;
 };
 
-/// The history variables that commit() moves to the end of a step; device.
+/// History variables that commit() advances to the end of a step; on the device.
 struct JointHistory {
   View<Real**> plastic_jump;  ///< [face, dim - 1] m
-  View<Real**> slid;          ///< [face, 1] 1 where the face slid in the step
-  View<Real**> runaway;       ///< [face, 1] m, see runaway.hpp; empty where laws have no history
-  View<Real*> softness;       ///< [face] m/Pa, see runaway_slip; empty where laws have no history
+  View<Real**> slid;          ///< [face, 1] 1 if the face slid in the step
+  View<Real**> runaway;       ///< [face, 1] m, see runaway.hpp; empty if laws have no history
+  View<Real*> softness;       ///< [face] m/Pa, see runaway_slip(); empty if laws have no history
 };
 
-/// The joint law on fracture faces. Its functions are those of one face, for kernels.
+/// Joint laws on fracture faces. The functions evaluate one face and are callable in kernels.
 ///
 /// | symbol       | shape                  | unit  |                                                  |
 /// | w, lambda    | [dim]                  | m, Pa | jump and traction in the frame of the face       |
 /// | R            | [dim]                  | Pa    | R(w, lambda) of laws/joint.hpp                   |
 /// | frame        | [face, dim, dim]       | -     | rows n, t1[, t2]                                 |
-/// | law          | [number]               |       | joint laws, in memory of the kernels             |
-/// | number       | [face]                 |       | number of the face's law                         |
-/// | augmentation | [face]                 | Pa/m  | c, without the factor                            |
+/// | law          | [number]               |       | joint laws, in device memory                     |
+/// | number       | [face]                 |       | number of the joint law                          |
+/// | augmentation | [face]                 | Pa/m  | c without `factor`                               |
 /// | p_old        | [face, dim - 1]        | m     | plastic jump of the last step                    |
 /// | kept         | [face, number]; empty: none |  | history variables of the laws                    |
 /// | damping      | [face]; empty: zero    | -     | see jacobian()                                   |
-/// | factor       | [face]; empty: 1       | -     | of c                                             |
-/// | tether       |                        | -     | share of c in the proximal term, see contact()   |
-/// | anchor       | [face, 2 dim]          | m, Pa | jump and traction to which the proximal term pulls |
+/// | factor       | [face]; empty: 1       | -     | factor of c                                      |
+/// | tether       |                        | -     | proximal stiffness relative to c, see contact()  |
+/// | anchor       | [face, 2 dim]          | m, Pa | jump and traction at the origin of the proximal term |
 template <int dim>
 struct JointPoints {
   ConstView<Real***> frame;
@@ -51,7 +52,7 @@ struct JointPoints {
   Real tether = 0;
   ConstView<Real**> anchor = {};
 
-  /// c, Pa/m, before the stiffness of the joint joins it.
+  /// Augmentation constant c, Pa/m, without the stiffness of the joint.
   KOKKOS_INLINE_FUNCTION Real constant(int f) const {
     return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
   }
@@ -64,22 +65,22 @@ struct JointPoints {
     return {numbers.first, numbers.stride};
   }
 
-  /// R and the state of contact.
+  /// Computes R and returns the contact state.
   KOKKOS_FUNCTION laws::ContactState residual(int f, const Real (&w)[dim], const Real (&lambda)[dim],
                                               Real (&R)[dim]) const;
-  /// The derivatives of R in w, then in lambda. Faces that are free to slide or part resist it like a spring of damping
-  /// times c_t, c_n, in derivatives alone.
+  /// Computes the derivatives of R in w, then in lambda. Sliding and open faces have additional springs of damping
+  /// times c_t, c_n. They appear in the derivatives only.
   KOKKOS_FUNCTION void jacobian(int f, const Real (&w)[dim], const Real (&lambda)[dim], Real (&dR)[dim][2 * dim]) const;
 
-  /// Energy that plastic slip dissipates in the step, J/m^2, and its derivatives in w, then in lambda:
-  ///   lambda_t . (p_t - p_old) + lambda_n (p_n - p_n,old),   p_t = w_t - lambda_t/K_t
-  /// with p_n the dilation by p_t: the work of friction minus the work that lifts the sides. It is zero where the face
-  /// sticks or is open.
+  /// Energy dissipated by plastic slip in the step, J/m^2, and its derivatives in w, then in lambda:
+  ///   lambda_t . (p_t - p_old) + lambda_n (p_n - p_n,old),   p_t = w_t - lambda_t/K_t,
+  /// where p_n is the dilation due to p_t. It is the work of friction minus the work against the compression. It is
+  /// zero if the face sticks or is open.
   KOKKOS_FUNCTION Real work(int f, const Real (&w)[dim], const Real (&lambda)[dim]) const;
   KOKKOS_FUNCTION void dwork(int f, const Real (&w)[dim], const Real (&lambda)[dim],
                              Real (&derivatives)[2 * dim]) const;
 
-  /// Moves the history of a face to the end of a step that ends at `end`.
+  /// Advances the history variables of a face to the end of a step with the result `end`.
   KOKKOS_FUNCTION void commit(int f, const JointPoint<dim>& end, const JointHistory& history) const;
 
  private:
@@ -97,7 +98,7 @@ struct JointPoints {
 
 }  // namespace sprekk::physics
 
-// Device code cannot call functions of other translation units.
+// Device code cannot call functions of other translation units, so the definitions are included.
 #if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
 #include "physics/mechanics/joint_points_laws.hpp"
 #endif

@@ -1,20 +1,20 @@
-// How the laws of a joint change with the state that they are evaluated at.
+// Derivatives of joint laws with respect to the contact state.
 #pragma once
 
 #include "laws/joint.hpp"
 
 namespace sprekk::physics {
 
-/// -db/dlambda_n of the bound of a joint that has not slipped.
+/// Slope -db/dlambda_n of the bound of a joint without slip.
 Real bound_slope(const laws::Joint& law, Real compression);
 
-/// -db/ds, Pa/m, of the bound with further slip of the step at a contact; above 0 where slip weakens the joint.
+/// Slope -db/ds, Pa/m, of the bound with respect to further slip in the step; positive for slip weakening.
 Real weakening(const laws::Joint& law, const laws::Contact<Real>& at);
 
-/// Derivative of the tangential compliance in the normal traction, m/Pa^2.
+/// Derivative of the tangential compliance by the normal traction, m/Pa^2.
 Real compliance_slope(const laws::Joint& law, const laws::Contact<Real>& at);
 
-/// How much the joint opens per plastic slip, m/m; `at` has the numbers that the joint keeps.
+/// Opening per plastic slip, m/m. `at` contains the history variables of the joint.
 Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at);
 
 }  // namespace sprekk::physics

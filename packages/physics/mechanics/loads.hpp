@@ -1,4 +1,4 @@
-// Loads on the rock that all momentum rows test alike: displacements and side bubbles.
+// Loads on the rock that act on all displacement functions, including face bubbles.
 #pragma once
 
 #include "assembly/geometry.hpp"
@@ -16,7 +16,7 @@ namespace sprekk::physics {
 struct BodyForce {
   std::vector<base::Expression> value = {};  ///< per component
   std::vector<Real> gravity = {};            ///< per component, m/s^2
-  std::vector<Real> density_of_cell = {};    ///< [local cell], kg/m^3; needed with gravity
+  std::vector<Real> density_of_cell = {};    ///< [local cell], kg/m^3; required with gravity
 
   bool empty() const { return value.empty() && gravity.empty(); }
   bool constant_in_time() const {
@@ -37,7 +37,7 @@ struct InitialStress {
   const std::vector<base::Expression>& of_cell(const mesh::Mesh& mesh, LocalIndex cell) const {
     return value[mesh.cell_region[cell]];
   }
-  /// At a point inside of a cell.
+  /// Computes the stress at a point inside of a cell.
   template <int dim>
   void at(const mesh::Mesh& mesh, LocalIndex cell, const std::array<Real, 3>& x, Real (&sigma)[dim][dim]) const {
     const auto& component = of_cell(mesh, cell);
@@ -50,9 +50,10 @@ struct InitialStress {
       sigma[0][2] = sigma[2][0] = component[5](x, 0);
     }
   }
-  /// The traction sigma_0 n, Pa, at a point x of a face of a cell, on the cell's side of it. Where sigma_0 steps across
-  /// the face, rounding would say on which side x lies; so it is continued from inside of the cell, with
-  /// d = 1e-6 (centre - x) as 2 sigma_0(x + d) - sigma_0(x + 2 d), which is exact where it is linear.
+  /// Traction sigma_0 n, Pa, at a point x of a face of a cell, on the side of this cell. sigma_0 may be discontinuous
+  /// across the face, where rounding would select the side of x. It is therefore extrapolated from the cell as
+  ///   2 sigma_0(x + d) - sigma_0(x + 2 d),   d = 1e-6 (centre - x),
+  /// which is exact for linear sigma_0.
   std::array<Real, 3> traction(const mesh::Mesh& mesh, LocalIndex cell, const std::array<Real, 3>& x,
                                const std::array<Real, 3>& n) const;
 };
@@ -68,11 +69,12 @@ struct FluidPressure {
   }
 };
 
-/// Mean of a fluid's pressure over a fracture face at time t, as the cell on `side` sees the face, Pa.
+/// Mean of the fluid pressure over a fracture face at time t, Pa, on the face of the cell on `side`.
 Real mean_fluid_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
                          int side, Real t);
 
-/// Mean of sigma_0 n over a fracture face, n from minus to plus, as the cell on `side` sees it; global components, Pa.
+/// Mean of sigma_0 n over a fracture face, n from minus to plus, on the face of the cell on `side`; global components,
+/// Pa.
 std::array<Real, 3> mean_initial_traction(const InitialStress& stress, const mesh::Mesh& mesh,
                                           const mesh::Mesh::FractureFace& face, int side);
 

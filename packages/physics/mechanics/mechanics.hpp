@@ -1,4 +1,4 @@
-// Mechanics of fractured rock: its entries of a scene and its modules.
+// Mechanics of fractured rock: scene entries and modules.
 #pragma once
 
 #include "base/expression.hpp"
@@ -14,41 +14,41 @@
 
 namespace sprekk::physics {
 
-Real usual_augmentation();  ///< of ElasticPlasticJumpParameters
+Real usual_augmentation();  ///< default of ElasticPlasticJumpParameters
 
 /// Initial stress of rock at rest under gravity along the last coordinate.
 struct Lithostatic {
   Real surface = 0;           ///< coordinate where the vertical stress is zero, m
-  Real horizontal_ratio = 1;  ///< horizontal over vertical stress
+  Real horizontal_ratio = 1;  ///< ratio of horizontal to vertical stress
   void describe(base::Section& section);
 };
 
-/// Initial stress whose principal directions are the vertical and two horizontal ones; compression positive, linear in
-/// the depth below a datum. In 3D x is east, y north, z up; in 2D x is east and y up, a vertical section.
+/// Initial stress with vertical and horizontal principal directions, compression positive, linear in the depth below a
+/// datum. In 3D x is east, y north and z up. In 2D x is east and y up (a vertical section).
 struct PrincipalStress {
   struct Component {
     Real value = 0, gradient = 0;  ///< at the datum, Pa; per metre of depth, Pa/m
   };
   Real datum = 0;  ///< vertical coordinate, m
   Component vertical, largest, smallest;
-  Real azimuth = 90;  ///< of the largest horizontal one, degrees clockwise from north
+  Real azimuth = 90;  ///< of the largest horizontal stress, degrees clockwise from north
   void describe(base::Section& section);
-  /// XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; tension positive.
+  /// Components XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; tension positive.
   std::vector<base::Expression> stress(int dim) const;
 };
 
 struct Mechanics : Physics<Mechanics> {
-  /// Every number may be an expression of x, y, z.
+  /// Elastic constants and density of rock. Every value may be an expression of x, y, z.
   struct Rock : Physics::Rock {
-    std::optional<base::Expression> E, nu, G, lambda, K;  ///< exactly two
-    std::optional<base::Expression> density;              ///< needed with gravity
+    std::optional<base::Expression> E, nu, G, lambda, K;  ///< exactly two are given
+    std::optional<base::Expression> density;              ///< required with gravity
     void describe(base::Section& section);
     void check(base::Section& section) const;
     bool has_elasticity() const { return E || nu || G || lambda || K; }
-    bool is_uniformly_elastic() const;  ///< no value depends on the place
-    /// The law at a point. Throws an Error that names the entry, the value and the point where it is out of range.
+    bool is_uniformly_elastic() const;  ///< no value depends on the position
+    /// Law at a point. Throws an Error with entry, value and point if a value is out of range.
     laws::Elasticity elasticity(const std::array<Real, 3>& x) const;
-    Real density_at(const std::array<Real, 3>& x) const;  ///< likewise; it must be given
+    Real density_at(const std::array<Real, 3>& x) const;  ///< throws the same errors; requires a density
   };
 
   struct Joint : Physics::Joint, JointMaterial {
@@ -57,12 +57,12 @@ struct Mechanics : Physics<Mechanics> {
   };
 
   struct Bulk : Physics::Bulk {
-    bool rigid = false;  ///< it does not deform: no mechanics
+    bool rigid = false;  ///< the rock does not deform; no mechanics
     std::vector<base::Expression> body_force;
     std::vector<base::Expression> initial_stress;   ///< XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D
     std::optional<Lithostatic> lithostatic_stress;  ///< or this
     std::optional<PrincipalStress> in_situ_stress;  ///< or this
-    std::vector<Real> release;                      ///< begin and end, see make_release(); empty: none
+    std::vector<Real> release;                      ///< begin and end, s, see make_release(); empty: none
     void describe(base::Section& section);
     void check(base::Section& section) const;
   };
@@ -75,7 +75,7 @@ struct Mechanics : Physics<Mechanics> {
 
   struct Fracture : Physics::Fracture {
     base::Expression fluid_pressure = 0;
-    std::vector<base::Expression> plastic_jump;  ///< tangential, at the start, in the frame of the face
+    std::vector<base::Expression> plastic_jump;  ///< initial tangential plastic jump in the face frame, m
     void describe(base::Section& section);
   };
 
@@ -83,8 +83,8 @@ struct Mechanics : Physics<Mechanics> {
     static constexpr const char* kinds =
         "either \"displacement\", or \"traction\", \"confining pressure\", \"foundation stiffness\" or several of "
         "these";
-    std::vector<base::Expression> displacement;    ///< per component; the text "free" leaves one free
-    std::vector<Real> lower_corner, upper_corner;  ///< displacements only at nodes in this box; empty: everywhere
+    std::vector<base::Expression> displacement;    ///< per component; the text "free" leaves a component free
+    std::vector<Real> lower_corner, upper_corner;  ///< displacements only at nodes in this box; empty: all nodes
     std::vector<base::Expression> traction;
     std::optional<base::Expression> confining_pressure;  ///< along the inward normal
     std::vector<Real> foundation_stiffness;              ///< of springs to rigid ground, per direction
@@ -96,9 +96,9 @@ struct Mechanics : Physics<Mechanics> {
   };
 
   struct Sections : Physics::Sections {
-    /// Of ElasticPlasticJumpParameters; not an entry, for it has no influence on solutions.
+    /// Value for ElasticPlasticJumpParameters. It is not an entry, since it does not affect solutions.
     Real augmentation = usual_augmentation();
-    /// Nor this: a live model has changed constants of rock or springs, or filled a region.
+    /// Not an entry: elastic constants or springs of a live model have changed, or a region was filled.
     bool keeps_stress = false;
     void keep(const Sections& other) {
       augmentation = other.augmentation;
@@ -125,34 +125,35 @@ struct Mechanics : Physics<Mechanics> {
   static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
 };
 
-/// Of local cells.
+/// Elasticity of local cells.
 Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh);
 
-/// With displacements of an order; 1: of any. Other unknowns on facets are those of fields with a part in the stress,
-/// which the bubbles of facets would have to see.
+/// Returns whether the scene has a "solid pressure" for displacements of an order; 1: of any order. Not available if
+/// another physics has unknowns on facets, because the facet bubbles would have to include its stress.
 bool has_solid_pressure(const Scene& scene, int order = 1);
 
-/// Regions of a mesh that a changed scene fills (true), or gives other elastic constants, by their names. Collective.
+/// Regions with changed rock in a changed scene, by name: true if filled, false if the elastic constants differ.
+/// Collective.
 std::map<std::string, bool> changed_rock(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
 
-/// Young's, Pa. Collective.
+/// Largest Young's modulus, Pa. Collective.
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
 
-/// As given, or the lithostatic one; of a region its own, where it has one.
+/// Initial stress of the scene: given, lithostatic or in-situ. A region may have its own.
 InitialStress initial_stress(const Scene& scene, const mesh::Mesh& mesh);
 
-/// An owned fracture face at the start: its traction in its frame, Pa, and the bound on the shear of its joint.
+/// Initial state of an owned fracture face: traction in its frame, Pa, and shear bound of its joint, Pa.
 struct StartOfFace {
   std::array<Real, 3> traction;
   Real bound;
 };
-/// Of all owned ones; empty without initial stress. Collective.
+/// Initial states of all owned fracture faces; empty without initial stress. Collective.
 std::vector<StartOfFace> starts_of_faces(const Setting& setting);
 
-/// g0 of (14), [owned fracture face]; null where it is the same all along the fracture.
+/// Gap g0 of (14), [owned fracture face]; null if it is constant on the fracture.
 std::vector<const base::Expression*> varying_gaps(const Scene& scene, const mesh::Mesh& mesh);
 
-/// Along the normal, of owned fracture faces, m. Collective.
+/// Initial normal jumps of owned fracture faces, m. Collective.
 std::vector<Real> initial_openings(const Setting& setting);
 
 }  // namespace sprekk::physics

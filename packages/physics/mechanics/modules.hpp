@@ -1,4 +1,4 @@
-// All modules of the mechanics of fractured rock.
+// Modules of the mechanics of fractured rock.
 #pragma once
 
 #include "physics/mechanics/bulk_momentum.hpp"
@@ -12,22 +12,23 @@ namespace sprekk::physics {
 
 struct MechanicsParameters {
   BulkMomentumParameters bulk;
-  std::map<std::string, ElasticFoundationParameters> foundations = {};  ///< by their boundary conditions
-  Properties<Real> solid_modulus = {};      ///< of cells, see SolidPressureParameters; empty: no rock has one
-  Properties<JointParameters> joints = {};  ///< of owned fracture faces, in groups by fractures
+  std::map<std::string, ElasticFoundationParameters> foundations = {};  ///< [name of the boundary condition]
+  Properties<Real> solid_modulus = {};      ///< [cell] see SolidPressureParameters; empty: no nearly incompressible
+                                            ///< rock
+  Properties<JointParameters> joints = {};  ///< of owned fracture faces, grouped by fractures
   FluidPressure fluid_pressure = {};
-  FluidPressure initial_pressure = {};  ///< or, of a fluid of unknown pressure, "face pressure", at the start
+  FluidPressure initial_pressure = {};  ///< initial "face pressure" of a fluid with unknown pressure
   Real start = 0;                       ///< time of the initial state, s
   Real augmentation = 0.3;              ///< see ElasticPlasticJumpParameters
-  std::string power_to = "";            ///< see there
+  std::string power_to = "";            ///< see ElasticPlasticJumpParameters
 };
 
-/// Of the module for jumps.
+/// Parameters of the module for jumps.
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters);
 
-/// What a mesh needs: the momentum of the bulk, with springs under boundaries and a solid pressure where rock is nearly
-/// incompressible; with fractures, the traction balance of their sides and the split of their jumps; with enriched tips
-/// (mesh::Mesh::enriched), the functions around them. Collective.
+/// Creates the modules that a mesh requires: momentum of the bulk, springs under boundaries, and a solid pressure for
+/// nearly incompressible rock. With fractures also the traction balance of their sides and the split of their jumps.
+/// With enriched tips (mesh::Mesh::enriched) also the tip functions. Collective.
 std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& mesh,
                                                               const MechanicsParameters& parameters);
 

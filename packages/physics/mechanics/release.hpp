@@ -1,4 +1,4 @@
-// Forces that are out of balance where a scene changes, let go little by little.
+// Gradual release of unbalanced forces after a change of the scene.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -7,9 +7,9 @@
 
 namespace sprekk::physics {
 
-/// Adds -(1 - s(t)) r to the rows of momentum, with r their residual at the time `begin`, where a changed system takes
-/// over the state of another one, and s growing from 0 there to 1 at `end`: after an excavation r is the traction of
-/// what was taken away on its walls. History: r of each field, "of FIELD", N.
+/// Creates a module that adds -(1 - s(t)) r to the rows of momentum. r is their residual at the time `begin`, when a
+/// changed system takes over a state. s grows from 0 at `begin` to 1 at `end`. After an excavation, r is the traction
+/// of the removed rock on the new walls. History: r of each field, "of FIELD", N.
 std::unique_ptr<assembly::Module> make_release(Real begin, Real end);
 
 }  // namespace sprekk::physics

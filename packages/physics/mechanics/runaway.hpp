@@ -1,13 +1,13 @@
-// Slip that runs away within a step.
+// Unstable slip within a step.
 #pragma once
 
 #include "laws/joint.hpp"
 
 namespace sprekk::physics {
 
-/// The slip of a step, m, at whose beginning the bound fell faster with slip than what shears the face unloads, by
-/// 1/`softness` Pa/m; else 0. Then the state at the end of the step, `end`, is not near the last one: it obeys the law,
-/// and so may others between.
+/// Unstable slip of a step, m; otherwise 0. Slip is unstable if, at the beginning of the step, the bound falls faster
+/// with slip than the rock unloads, 1/`softness`, Pa/m. The state `end` then satisfies the law, but it is not close to
+/// the last state, and there may be other solutions between them.
 KOKKOS_INLINE_FUNCTION Real runaway_slip(const laws::Joint& law, const laws::Contact<Real>& end, Real softness) {
   if (!(end.slip_of_step > 0)) return 0;
   const auto bound_after = [&](Real slip) {

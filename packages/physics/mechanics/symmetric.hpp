@@ -7,14 +7,14 @@
 
 namespace sprekk::physics {
 
-/// Symmetric tensors as their components XX, YY[, ZZ], XY[, YZ, XZ].
+/// Symmetric tensors stored by their components XX, YY[, ZZ], XY[, YZ, XZ].
 template <int dim>
 struct Symmetric {
   static constexpr int n = dim * (dim + 1) / 2;
   using Values = std::array<Real, n>;
   static constexpr int row(int k) { return k < dim ? k : k == 4 ? 1 : 0; }
   static constexpr int column(int k) { return k < dim ? k : k == 3 || dim == 2 ? 1 : 2; }
-  /// a : b
+  /// Returns a : b.
   static Real product(const Values& a, const Values& b) {
     Real sum = 0;
     for (int k = 0; k < n; ++k) sum += (k < dim ? 1 : 2) * a[k] * b[k];
@@ -28,7 +28,7 @@ struct Symmetric {
   }
 
  private:
-  /// a v + b tr(v) I
+  /// Returns a v + b tr(v) I.
   static Values scaled(const Values& v, Real a, Real b) {
     Real trace = 0;
     for (int i = 0; i < dim; ++i) trace += v[i];

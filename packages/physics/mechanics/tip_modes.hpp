@@ -1,4 +1,4 @@
-// Stress around crack tips: the part that grows with the inverse root of the distance.
+// Stress around crack tips: singular crack modes.
 #pragma once
 
 #include "mesh/facets.hpp"
@@ -13,9 +13,9 @@
 
 namespace sprekk::physics {
 
-/// Frames of the local crack tips (mesh::Mesh::tip) and the singular stresses of a crack in plane strain (Williams
-/// 1957), by Westergaard's functions Z = z^(-1/2), z = x1 + i x2: x1 points ahead of the crack, x2 along its normal, x3
-/// along its front.
+/// Frames of the local crack tips (mesh::Mesh::tip) and stresses of a crack in plane strain (Williams 1957), in terms
+/// of Westergaard's functions Z = z^(-1/2), at order 2 also z^(1/2), with z = x1 + i x2. x1 points ahead of the crack,
+/// x2 along its normal, x3 along its front.
 ///   opening: s11 = Re Z - x2 Im Z', s22 = Re Z + x2 Im Z', s12 = -x2 Re Z'
 ///   sliding: s11 = 2 Im Z + x2 Re Z', s22 = -x2 Re Z', s12 = Re Z - x2 Im Z'     s33 = nu (s11 + s22)
 ///   tearing, in 3D: s13 = Im Z, s23 = Re Z
@@ -33,9 +33,10 @@ class TipModes {
           add(face, static_cast<int>(k));
   }
 
-  /// Around a tip, a corner of a local cell, seen from a point of the cell: the front goes along its edge from the tip
-  /// that the cell has, or, where it has none, as the edges of the front around the tip say; tips of other fronts do
-  /// not count. Pa m^0.5. Nothing where no fracture is known to end, as at a node that is tied to a tip.
+  /// Modes around a tip at a point of a local cell with this tip as a corner, Pa m^0.5. The direction of the front is
+  /// that of the front edge of the cell at this tip. Without such an edge, it is the mean direction of the front edges
+  /// around the tip. Other fronts do not count. None if no fracture is known to end there, e.g. at a node tied to a
+  /// tip.
   std::optional<std::array<Values, n>> at(LocalIndex cell, LocalIndex tip, const std::array<Real, dim>& x,
                                           Real poisson) const {
     using namespace mesh;
@@ -61,8 +62,8 @@ class TipModes {
 
  private:
   struct Frame {
-    mesh::Vector normal{}, behind{}, along{};  // not of unit length; along: as ahead x normal
-    std::vector<LocalIndex> next;              // nodes at the other ends of the front's edges
+    mesh::Vector normal{}, behind{}, along{};  // not of unit length; along = ahead x normal
+    std::vector<LocalIndex> next;              // other end nodes of the front edges
   };
 
   mesh::Vector from_to(LocalIndex a, LocalIndex b) const {
@@ -71,8 +72,8 @@ class TipModes {
     return d;
   }
 
-  /// For the tip that is the k-th node of a face. Edges that both sides share, as the normal says which way round, add
-  /// up to those of the front: of others two faces have opposite directions, and both name their ends.
+  /// Adds the frame of the tip at the k-th node of a face. Sums the edges whose end nodes both sides share, oriented by
+  /// the normal. Interior edges cancel because two faces add them in opposite directions.
   void add(const mesh::Mesh::FractureFace& face, int k) {
     using namespace mesh;
     const LocalIndex node = face.nodes[0][k];
@@ -97,7 +98,7 @@ class TipModes {
       }
   }
 
-  /// From a tip to a next one that the cell has, too; zero if there is none.
+  /// Vector from a tip to the next tip of its front in the same cell; zero if there is none.
   mesh::Vector front(LocalIndex cell, LocalIndex tip, const std::vector<LocalIndex>& next) const {
     const int n_nodes = mesh_.nodes_per_cell();
     for (int k = 0; k < n_nodes; ++k)
@@ -107,7 +108,7 @@ class TipModes {
     return {};
   }
 
-  /// The modes at (x1, x2) in global components; `axes` are rows.
+  /// Modes at (x1, x2) in global components; the rows of `axes` are the local axes.
   static std::array<Values, n> turned(const std::array<mesh::Vector, 3>& axes, Real x1, Real x2, Real poisson) {
     const std::complex<Real> z(x1, x2), root = std::sqrt(z);
     std::array<std::array<std::array<Real, 3>, 3>, 3 * order> local{};

@@ -1,5 +1,4 @@
-// Joints whose law may have no state, or more than one: of sets of fractures, and of single fractures with entries of
-// their own.
+// Joints whose law may have no solution or several, for fracture sets and single fractures with individual entries.
 #pragma once
 
 #include "physics/scene.hpp"
@@ -8,28 +7,30 @@
 
 namespace sprekk::physics {
 
-/// Names the joint whose friction bound rises most with the compression, by more than 1, and how much; empty without
-/// such a joint. Laws are asked at compressions that rock is under, G/1e5 to G/100.
-/// Above about 1 examples without equilibrium, and with several, are known: Klarbring (1990).
+/// Message about the joint whose friction bound rises most with the compression, with a slope above 1; empty: none. The
+/// slope is evaluated at compressions from G/1e5 to G/100. Examples without equilibrium and with several solutions are
+/// known for slopes above about 1: Klarbring (1990).
 std::string friction_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
-/// Names the joint whose bound falls most with slip, relative to the compression N, and the N from which on it falls
-/// faster than a block of the domain's extent L unloads, -db/ds > 1/(L/G + 1/K_t): there slip runs away. Bonds are left
-/// out. Empty without such a joint, if that takes more than G/100, or if properties depend on the place. Collective.
+/// Message about the joint whose bound falls most with slip, relative to the compression N. It contains the least N at
+/// which slip is unstable: -db/ds > 1/(L/G + 1/K_t), with the extent L of the domain. Excludes bonds. Empty without
+/// such a joint, if this N exceeds G/100, or if properties depend on the position. Collective.
 std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh);
-/// The same of bonds, which soften faster than the rock unloads, by opening, T/o_f > (lambda + 2 G)/L without closure,
-/// or by slip, c/s_f > G/L without tangential stiffness: in words, or "".
+/// Message about bonds that soften faster than the rock unloads; empty: none. Opening: T/o_f > (lambda + 2 G)/L without
+/// closure. Slip: c/s_f > G/L without tangential stiffness.
 std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
-/// Names a joint on reversal of whose slip the solution may not be unique, and its largest dilation angle; empty
-/// without such a joint, if properties depend on the place, and of fractures whose opening no rock resists, as where
-/// the load on a block that is free to move gives the normal traction: the bound does not fall then. In a block of
-/// height L with one fracture, slip that turns back by dp lowers the shear traction by K_s dp and, since dilation
-/// closes the fracture, friction's bound by mu tan(theta) k dp, with 1/K_s = L/G + 1/K_t and 1/k = L/(lambda + 2G) +
-/// B', B' <= 1/K_n the compliance of the closure; mu and tan(theta) stand for the slopes of bound and dilation. Where
-/// the bound falls faster, mu tan(theta)/K_s > 1/k, there are displacements for which sticking, slipping back and
-/// opening all satisfy the law. L is the largest extent of the domain and B' = 1/K_n; of several rocks, the largest G
-/// and the smallest lambda + 2G count. Collective.
+/// Message about a joint for which the solution may not be unique when slip reverses, with its dilation angle and the
+/// largest angle without this effect; empty: none. Also empty if properties depend on the position, and for fractures
+/// whose opening is not resisted by rock. In the latter case, e.g. at a free block, the load determines the normal
+/// traction, and the bound does not fall.
+///
+/// Consider a block of height L with one fracture. Reversed slip dp lowers the shear traction by K_s dp. As dilation
+/// closes the fracture, the friction bound falls by mu tan(theta) k dp, with
+///   1/K_s = L/G + 1/K_t,   1/k = L/(lambda + 2G) + B',   B' <= 1/K_n (compliance of the closure).
+/// mu and tan(theta) stand for the slopes of bound and dilation. If the bound falls faster, mu tan(theta)/K_s > 1/k,
+/// some displacements admit stick, reversed slip and opening. L is the largest extent of the domain, B' = 1/K_n; of
+/// several rocks, the largest G and the smallest lambda + 2G are used. Collective.
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics
