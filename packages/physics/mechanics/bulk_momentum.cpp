@@ -87,7 +87,7 @@ class BulkMomentum final : public assembly::Module {
     loaded_ = true;
   }
 
-  /// Forces of cells that are carried, on their nodes.
+  /// Sums the carried forces of cells at their nodes.
   void start_step(const assembly::State& state) override {
     if (!parameters_.keeps_stress) return;
     fields::Vector owned(all_cells_->owned()), all(all_cells_->ghosted());
@@ -119,7 +119,7 @@ class BulkMomentum final : public assembly::Module {
     if (parameters_.keeps_stress) add_constitutive(-1, state, state.history[0], state.history[1]);
   }
 
-  /// Largest traction, and largest body force at nodes times the size of the whole domain.
+  /// Stress scale: largest traction, and largest body force at nodes times the size of the domain.
   assembly::Scales loads(Real t) const override {
     Real largest = 0;
     for (const auto& traction : parameters_.tractions)
@@ -143,7 +143,7 @@ class BulkMomentum final : public assembly::Module {
     return {{"stress", std::max(largest, force * size_)}};
   }
 
-  /// Adds `factor` times the forces on the nodes of owned cells, and their stress, by the present constants.
+  /// Adds `factor` times the forces on the nodes of owned cells, and their stress, with the present constants.
   void add_constitutive(Real factor, const assembly::State& state, const View<Real**>& forces,
                         const View<Real**>& stress) const {
     const auto op = *op_;
@@ -181,7 +181,7 @@ class BulkMomentum final : public assembly::Module {
     for (std::size_t k = 0; k < values.size(); ++k) values[k] += carried(k / 6, k % 6);
     return values;
   }
-  /// Without what is carried.
+  /// Stress without the carried stress.
   std::vector<Real> constitutive_stresses(const assembly::State& state) const {
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
     const auto q = tip_displacement_ < 0
@@ -204,7 +204,7 @@ class BulkMomentum final : public assembly::Module {
   bool has_load() const {
     return !parameters_.body_force.empty() || !parameters_.tractions.empty() || !parameters_.initial_stress.empty();
   }
-  /// Young's, Pa. Collective.
+  /// Largest Young's modulus, Pa. Collective.
   Real largest_modulus(const mesh::Mesh& mesh) const {
     Real here = 0;
     for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c)
@@ -314,7 +314,7 @@ class BulkMomentum final : public assembly::Module {
     for (std::size_t k = 0; k < initial.size(); ++k) values[values.size() - 6 + k] += initial[k](x, 0);
   }
 
-  /// [owned entity, component]
+  /// View of the values as [owned entity, component].
   static View<Real**> values_of(fields::Vector& vector) {
     const auto local = vector.getLocalViewDevice(Tpetra::Access::ReadWrite);
     return View<Real**>(local.data(), local.extent(0) / (n * dim), n * dim);
@@ -325,7 +325,7 @@ class BulkMomentum final : public assembly::Module {
   BulkMomentumParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
   int displacement_ = -1, tip_displacement_ = -1, solid_pressure_ = -1;
-  bool loaded_ = false, split_ = false;  // has a solid pressure
+  bool loaded_ = false, split_ = false;  // split_: has a solid pressure
   Real size_ = 0;                        // largest extent of the domain, m
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> cells_;

@@ -1,4 +1,4 @@
-// What of mechanics a live model keeps where its scene changes.
+// Change of the mechanical part of a scene in a live model.
 #include "assembly/tip_cell.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint.hpp"
@@ -19,7 +19,7 @@ namespace sprekk::physics {
 
 namespace {
 
-/// The laws of a joint that keep numbers of faces, by their names, in the order of the numbers.
+/// Names of the joint laws with history variables, in the order of these variables.
 std::vector<std::string> laws_with_memory(const Material& material) {
   std::vector<std::string> names;
   material.joint({}).law.for_each_part([&](const auto& law, int) {
@@ -34,7 +34,7 @@ bool is_excavated(const Scene& scene, const std::string& region) {
   return found != scene.regions.end() && found->second.excavated;
 }
 
-/// Stiffness by condition, and where it is.
+/// Stiffness, boundary and region of springs, by condition.
 auto springs_of(const Scene& scene) {
   std::map<std::string, std::tuple<std::string, std::string, std::vector<Real>>> springs;
   for (const auto& [name, condition] : scene.boundary_conditions)
@@ -64,7 +64,7 @@ std::map<std::string, bool> changed_rock(const mesh::Mesh& mesh, const Scene& be
   return changed;
 }
 
-/// Strains and jumps count from a state without them under the initial stress.
+/// Strains and jumps are measured from the initial state, which has the initial stress.
 std::vector<std::string> Mechanics::fixed_entries() {
   return {"initial stress", "lithostatic stress", "in-situ stress", "plastic jump"};
 }
@@ -75,7 +75,7 @@ void Mechanics::prepare_change(const mesh::Mesh& mesh, const Scene& before, Scen
                               (!changed_rock(mesh, before, after).empty() || springs_of(before) != springs_of(after)));
 }
 
-/// The stress that goes on is that of the nodes: not of the bubbles of fractures' sides, nor of functions around tips.
+/// Only the stress of nodes can be transferred, not that of face bubbles and tip functions.
 std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
   if (!is_in(before) || !is_in(after)) return {};
   const auto changed = changed_rock(mesh, before, after);

@@ -1,4 +1,4 @@
-// What scenes may ask of mechanics.
+// Checks of scenes with mechanics.
 #include "assembly/free_motion.hpp"
 #include "physics/comparison.hpp"
 
@@ -12,7 +12,7 @@ namespace sprekk::physics {
 
 namespace {
 
-/// The entry that says that the rock does not deform.
+/// Name of the entry that makes the rock rigid.
 std::string rigid_entry(const Scene& scene) { return scene.bulk.rigid ? "\"Bulk > rigid\"" : "\"Flow > rigid rock\""; }
 
 void check_stress(Comparison& c, const std::string& section, const std::vector<base::Expression>& stress) {
@@ -81,7 +81,7 @@ void compare_gravity(Comparison& c) {
   if (scene.bulk.gravity.empty() || !Mechanics::is_in(scene) || !c.names().regions || !c.is_sound("Regions")) return;
   std::set<const Material*> heavy;
   for (const auto& name : *c.names().regions) heavy.insert(c.rock_of(name));
-  if (scene.bulk.lithostatic_stress) heavy.insert(c.rock_of("bulk"));  // whose density it takes
+  if (scene.bulk.lithostatic_stress) heavy.insert(c.rock_of("bulk"));  // lithostatic stress uses this density
   for (const auto& [name, material] : scene.materials)
     if (heavy.count(&material) && !material.density && c.is_sound("Materials > " + name))
       c.fail(fmt::format("Materials > {} > \"density\"", name), "missing; it is required with \"gravity\"");
@@ -109,7 +109,7 @@ void compare_in_situ_stress(Comparison& c) {
                      stress->azimuth));
 }
 
-/// The conditions that could be read and fit to the mesh.
+/// Conditions without errors that match the mesh.
 std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c) {
   std::map<std::string, BoundaryCondition> result;
   for (const auto& [name, condition] : c.scene().boundary_conditions) {
@@ -125,7 +125,7 @@ std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c)
   return result;
 }
 
-/// Conditions on displacements that hold what those do and springs.
+/// Conditions on displacements that constrain the same unknowns as the given conditions and springs.
 std::vector<assembly::DirichletCondition> with_springs(const Comparison& c,
                                                        std::map<std::string, BoundaryCondition> conditions) {
   for (auto& [name, condition] : conditions) {
@@ -137,7 +137,7 @@ std::vector<assembly::DirichletCondition> with_springs(const Comparison& c,
   return dirichlet_conditions(conditions, {}, c.names(), "displacement");
 }
 
-/// Of conditions in boxes: that a node of the boundary is in each, or which one is nearest to its middle.
+/// Reports boxes of conditions without a boundary node, with the node nearest to the centre of the box.
 void check_boxes(Comparison& c, const mesh::GlobalMesh& mesh,
                  const std::vector<assembly::DirichletCondition>& conditions) {
   using mesh::operator-, mesh::operator+, mesh::operator*;
@@ -166,7 +166,7 @@ void check_boxes(Comparison& c, const mesh::GlobalMesh& mesh,
   }
 }
 
-/// Whether the values of a condition at the end of the first step are known.
+/// Returns whether a condition can be evaluated at the end of the first step.
 bool can_be_evaluated(const Comparison& c, const BoundaryCondition& condition) {
   return (c.begin() && c.is_sound("Tables")) ||
          std::all_of(condition.displacement.begin(), condition.displacement.end(),

@@ -14,7 +14,7 @@ namespace {
 
 using HostValues = typename fields::Vector::dual_view_type::t_host::const_type;
 
-/// An owned face whose cells have no tip.
+/// Owned face whose cells have no tip.
 class Face {
  public:
   Face(const mesh::Mesh& mesh, LocalIndex f, const HostValues& u, const HostValues& beta, const base::Expression* gap)
@@ -30,9 +30,9 @@ class Face {
     mean_ = mean([](Real o) { return o; });
   }
 
-  /// Moves the distances o(x) so that this is their mean.
+  /// Shifts the distances o(x) to the given mean.
   void set_mean(Real distance) { shift_ = distance - mean_; }
-  /// The mean of value(o).
+  /// Returns the mean of value(o).
   template <class Value>
   Real mean(const Value& value) const {
     return assembly::face_mean(mesh_, face_.cell[mesh::minus], face_.local_face[mesh::minus],
@@ -51,7 +51,7 @@ class Face {
   Real bubble_ = 0, mean_ = 0, shift_ = 0;
 };
 
-/// C, m/Pa.
+/// Compliance C, m/Pa.
 Real compliance(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
                 const Properties<laws::Elasticity>& elasticity) {
   Real sum = 0;

@@ -12,12 +12,12 @@ namespace sprekk::physics {
 
 namespace {
 
-/// The springs under one boundary face.
+/// Springs under one boundary face.
 ///
 /// | symbol | shape              | unit |                                                             |
 /// | x      | u [node, dim]      | m    | displacement of the face's nodes                            |
 /// | r      | [node, dim]        | N    | forces                                                      |
-/// | mass   | [face, node, node] | m^2  | integral N_a N_b; zero where the boundary is another one    |
+/// | mass   | [face, node, node] | m^2  | integral N_a N_b; zero on other boundaries                  |
 /// | k      | [dim]              | Pa/m | stiffness                                                   |
 template <mesh::Shape shape>
 struct SprungFace {
@@ -48,7 +48,7 @@ struct SprungFace {
   }
 };
 
-/// Calls use(number, face) for the faces that springs are under.
+/// Calls use(number, face) for the faces with springs.
 template <class Use>
 void for_each_sprung(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters, const Use& use) {
   for (std::size_t f = 0; f < mesh.boundary_faces.size(); ++f) {
@@ -58,7 +58,7 @@ void for_each_sprung(const mesh::Mesh& mesh, const ElasticFoundationParameters& 
   }
 }
 
-/// integral N_a N_b over each of these faces, [face, node, node]; zero for others.
+/// Computes integral N_a N_b over the faces with springs, [face, node, node]; zero on other faces.
 template <mesh::Shape shape>
 View<Real***> boundary_mass(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters) {
   constexpr int n = mesh::n_face_nodes(shape);
@@ -75,7 +75,7 @@ View<Real***> boundary_mass(const mesh::Mesh& mesh, const ElasticFoundationParam
   return mass;
 }
 
-/// The components of the displacement that have a spring, of local nodes.
+/// Components of the displacement with a spring, of local nodes.
 std::vector<contact::Support> supports(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters) {
   std::set<std::pair<LocalIndex, int>> held;
   for_each_sprung(mesh, parameters, [&](std::size_t, const auto& face) {

@@ -35,13 +35,14 @@ std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
 
 namespace {
 
-/// Shear over compression of a traction n, t[, t2]: Morris, Ferrill and Henderson (1996).
+/// Ratio of shear traction to compression of a traction n, t[, t2] (Morris, Ferrill and Henderson 1996); none without
+/// compression.
 std::optional<Real> slip_tendency(const std::vector<Real>& traction) {
   if (!(traction[0] < 0)) return {};
   return std::hypot(traction[1], traction.size() > 2 ? traction[2] : 0) / -traction[0];
 }
 
-/// Of a seismic moment in N m: Hanks and Kanamori (1979).
+/// Moment magnitude of a seismic moment in N m (Hanks and Kanamori 1979); none for zero.
 std::optional<Real> moment_magnitude(const std::vector<Real>& moment) {
   if (!(moment[0] > 0)) return {};
   return 2.0 / 3 * (std::log10(moment[0]) - 9.1);
@@ -121,7 +122,7 @@ class ElasticPlasticJump final : public assembly::Module {
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
   }
 
-  /// The laws with the history of `state`.
+  /// Joint laws with the history variables of `state`.
   Points at(const assembly::State& state) const {
     Points points = points_;
     points.p_old = state.history[0];
@@ -134,7 +135,7 @@ class ElasticPlasticJump final : public assembly::Module {
 
   bool dissipates() const { return !parameters_.power_to.empty(); }
 
-  /// What laws keep of a face, on the host.
+  /// Returns a function of the face with the history variables of the laws, on the host.
   auto kept_on_host(const assembly::State& state) const {
     Kokkos::View<Real**, Kokkos::LayoutRight, Kokkos::HostSpace> numbers;
     if (parameters_.n_kept > 0) numbers = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[2]);
@@ -144,7 +145,7 @@ class ElasticPlasticJump final : public assembly::Module {
     };
   }
 
-  /// L/G of the softer side, m/Pa: about what rock gives in under shear of a face of a fracture of size L. Device.
+  /// Shear compliance of the rock at a face of a fracture of size L: L/G of the softer side, m/Pa; on the device.
   View<Real*> softness() const {
     View<Real*> all("softness", mesh_->n_owned_fracture_faces);
     const auto host = Kokkos::create_mirror_view(all);
@@ -173,18 +174,18 @@ class ElasticPlasticJump final : public assembly::Module {
 
   bool has_tips_;
   ElasticPlasticJumpParameters parameters_;
-  bool holds_fluid_ = false;  // of unknown pressure
+  bool holds_fluid_ = false;  // the fluid pressure is unknown
   RCP<const mesh::Mesh> mesh_;
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   ConstView<laws::Joint*> laws_;
-  Points points_;  // without history
+  Points points_;  // without history variables
   std::unique_ptr<JointOperators<dim>> operators_;
-  View<Real*> softness_;           // [owned face], where laws keep numbers
-  View<Real*> merit_weight_;       // [owned row], |f| h/(10 E), a face's compliance: sum of weight R^2 is an energy
-  std::vector<Real> modulus_;      // [owned face] Young's, of the softer side, Pa
+  View<Real*> softness_;           // [owned face]; only if laws have history variables
+  View<Real*> merit_weight_;       // [owned row] compliance of a face, |f| h/(10 E): sum of weight R^2 is an energy
+  std::vector<Real> modulus_;      // [owned face] Young's modulus of the softer side, Pa
   std::vector<Real> size_;         // [fracture] m
-  std::vector<Real> single_size_;  // [single fracture] m, where slip may run away
-  int pressure_ = -1;              // the block of face pressures, if it holds fluid
+  std::vector<Real> single_size_;  // [single fracture] m, for unstable slip
+  int pressure_ = -1;              // block of face pressures; only with unknown pressure
 };
 
 template <int dim>
@@ -199,7 +200,7 @@ ConstView<Real**> ElasticPlasticJump<dim>::initial_jump() const {
   return rest;
 }
 
-/// That of the initial stress, where it presses.
+/// Sets the traction of the initial stress on faces under compression.
 template <int dim>
 void ElasticPlasticJump<dim>::initial(const assembly::Rows& x) const {
   const auto traction = Kokkos::create_mirror_view(x[fields_[2]]);
@@ -251,7 +252,7 @@ void ElasticPlasticJump<dim>::set_points() {
   points_.number = assembly::to_device(number, "number");
 }
 
-/// The augmentation, Young's modulus of the softer side, and the weights of the merit.
+/// Computes the augmentation, Young's modulus of the softer side, and the weights of the merit.
 template <int dim>
 void ElasticPlasticJump<dim>::set_sizes() {
   std::vector<Real> augmentation;
@@ -285,9 +286,9 @@ void ElasticPlasticJump<dim>::commit(assembly::State& state) const {
       KOKKOS_LAMBDA(int f) { points.commit(f, end(f), history); });
 }
 
-/// Slip follows the traction at the end of the step, though on the way there it followed others: with an angle alpha
-/// between the tractions at both ends, it is off by about sin(alpha)/2 (back along the same line it is exact). In the
-/// mean over faces that have slid, weighted by their shear forces.
+/// Error of the slip direction. Slip follows the traction at the end of the step, but the traction rotates during the
+/// step. For an angle alpha between the tractions at both ends, the relative error is about sin(alpha)/2; it is zero
+/// for a reversal along the same line. Mean over faces that have slid, weighted by their shear forces.
 template <int dim>
 void ElasticPlasticJump<dim>::step_errors(const assembly::State& begin, const assembly::State& end,
                                           fields::StepErrors& errors) const {
@@ -307,8 +308,9 @@ void ElasticPlasticJump<dim>::step_errors(const assembly::State& begin, const as
   errors.push_back({"direction of slip", sums[1] > 0 ? sums[0] / sums[1] : 0, 1});
 }
 
-/// |R| in the traction scale cannot see the split of a soft joint, so |R_n|/c_n where the faces touch and |R_t|/c_t
-/// where they stick or slip are held against the displacement scale, less what rounding leaves of the jump.
+/// Measures the split of the jump. |R| in the traction scale is insensitive to soft joints. Therefore |R_n|/c_n of
+/// closed faces and |R_t|/c_t of sticking and sliding faces are measured in the displacement scale, minus the rounding
+/// error of the jump.
 template <int dim>
 void ElasticPlasticJump<dim>::measure(const assembly::State& state, const assembly::Scales& scales,
                                       std::vector<fields::Measure>& measures) const {
@@ -324,14 +326,15 @@ void ElasticPlasticJump<dim>::measure(const assembly::State& state, const assemb
   measures.push_back({"split of the jump", largest / scales.at("displacement")});
 }
 
-/// Closed faces keep their gap; sticking ones resist in all directions, sliding ones across their slip.
+/// Sets the contact constraints. Closed faces keep their gap. Sticking faces resist in all directions, sliding faces
+/// normal to their slip.
 template <int dim>
 void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<contact::Grip>& grips) const {
   const auto kept = kept_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
     const auto& law = parameters_.joints[joint_of(f)].law;
-    Real p[dim - 1] = {}, shear[dim - 1], widening[dim] = {1};  // derivative of w_n - g in w
+    Real p[dim - 1] = {}, shear[dim - 1], widening[dim] = {1};  // widening: derivative of w_n - g in w
     const auto contact = [&](Real normal, Real size) {
       return laws::contact<dim>(normal, size, p, point.p_old, kept(f));
     };
@@ -359,7 +362,7 @@ void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<con
         grips[f].away[i] += widening[k] * frame[k][i];
         if (k > 0) grips[f].slip[i] += (p[k - 1] - point.p_old[k - 1]) * frame[k][i];
       }
-    Real bound[dim - 1];  // the traction that the law answers with: along the slip where there is some
+    Real bound[dim - 1];  // traction of the law; along the slip if there is any
     for (int k = 1; k < dim; ++k) bound[k - 1] = point.traction[k] - point.R[k];
     const Real size = laws::norm(bound);
     for (int k = 0; k < dim; ++k)
@@ -380,8 +383,8 @@ void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<con
   });
 }
 
-/// A fluid opens a fracture of size L by about 0.4 L/E times its pressure where the sides do not touch: a disc of
-/// radius L/3 by 16/(3 pi) (1 - nu^2) (L/3)/E at most, and two thirds of that in the mean (Sneddon 1946).
+/// Adds the fracture compliance of open faces. A fluid pressure p opens a fracture of size L by about 0.4 L/E p. This
+/// is two thirds of the maximum opening 16/(3 pi) (1 - nu^2) (L/3)/E p of a disc of radius L/3 (Sneddon 1946).
 template <int dim>
 void ElasticPlasticJump<dim>::add_schur(const assembly::State& state, const assembly::Rows& diagonals) const {
   const auto rows = Kokkos::create_mirror_view(diagonals[pressure_]);
@@ -395,8 +398,8 @@ void ElasticPlasticJump<dim>::add_schur(const assembly::State& state, const asse
   Kokkos::deep_copy(diagonals[pressure_], rows);
 }
 
-/// Sliding, and an elasticity that depends on the normal traction, make a face's matrix non-symmetric; a bond that
-/// softens makes it indefinite.
+/// Returns whether all face matrices are symmetric. Slip, and elasticity that depends on the normal traction, make them
+/// non-symmetric. A softening bond makes them indefinite.
 template <int dim>
 bool ElasticPlasticJump<dim>::symmetric(const assembly::State& state) const {
   bool symmetric = true;
@@ -412,8 +415,8 @@ bool ElasticPlasticJump<dim>::symmetric(const assembly::State& state) const {
   return symmetric;
 }
 
-/// What is shown of a face. One that slid in the step lies on the limit of friction for the plastic jump that it has
-/// now.
+/// Output quantities of a face. The state of a face that slid in the step is on the friction limit of its present
+/// plastic jump.
 template <int dim>
 struct ElasticPlasticJump<dim>::Shown {
   const Point& point;
@@ -437,7 +440,7 @@ struct ElasticPlasticJump<dim>::Shown {
 
 template <int dim>
 Real ElasticPlasticJump<dim>::slip_since_start(LocalIndex f, const Shown& face) const {
-  Real slip[dim - 1];  // of what was committed: 0 without rounding where a face has never slid
+  Real slip[dim - 1];  // from the committed jump: exactly 0 if a face has never slid
   for (int i = 0; i < dim - 1; ++i) slip[i] = face.point.p_old[i] - parameters_.joints[joint_of(f)].plastic_jump[i];
   return laws::norm(slip);
 }
@@ -520,7 +523,7 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
     const auto& law = joint.law;
     const auto& plastic = joint.plastic_jump;
     const Real pressed = jumps[f][0];
-    const Real zero = 0;  // all that laws have kept of faces
+    const Real zero = 0;  // all history variables
     laws::Contact<Real> at{.lambda_n = std::min(pressed, Real(0)), .dim = mesh.dim(), .history = {&zero, 0}};
     const Real compliance = law.compliance(at);
     at.plastic_slip = std::hypot(plastic[0], plastic[1]);

@@ -1,4 +1,4 @@
-// What scenes say of mechanics.
+// Scene entries of mechanics.
 #include "laws/elastic_constants.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/entry_of_place.hpp"
@@ -62,7 +62,7 @@ Real Mechanics::Rock::density_at(const std::array<Real, 3>& x) const {
   return value_at(density_name, *density, base::at_least(0), x);
 }
 
-/// Of all kinds where it is not known which the material has.
+/// Declares the entries of all laws if the selection is not known.
 void Mechanics::Joint::describe(base::Section& s) { JointMaterial::describe(s, s.documents() || !s.is_sound()); }
 
 void Mechanics::Bulk::describe(base::Section& s) {

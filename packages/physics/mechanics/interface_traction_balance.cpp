@@ -66,7 +66,7 @@ class InterfaceTractionBalance final : public assembly::Module {
     return parameters_.body_force.constant_in_time() && parameters_.fluid_pressure.constant_in_time();
   }
 
-  /// The fluid's largest pressure.
+  /// Stress scale: largest fluid pressure.
   assembly::Scales loads(Real t) const override {
     Real largest = 0;
     for_each_pressure(t, [&](Real p) { largest = std::max(largest, std::abs(p)); });
@@ -101,7 +101,7 @@ class InterfaceTractionBalance final : public assembly::Module {
   }
 
  private:
-  /// Calls visit(p) for every owned face, if there is fluid.
+  /// Calls visit(p) for every owned face if there is a fluid.
   template <class Visit>
   void for_each_pressure(Real t, const Visit& visit) const {
     if (parameters_.fluid_pressure.empty()) return;
@@ -120,7 +120,7 @@ class InterfaceTractionBalance final : public assembly::Module {
     Kokkos::deep_copy(op_->pressure, pressure);
   }
 
-  /// Loads of the initial stress on the bubble and on the nodes of one side.
+  /// Adds the loads of the initial stress on the bubble and the nodes of one side.
   template <class Host>
   void add_initial_stress(const mesh::Mesh::FractureFace& face, int side, const Host& force, const Host& nodal) const {
     const LocalIndex cell = face.cell[side];
@@ -152,7 +152,7 @@ class InterfaceTractionBalance final : public assembly::Module {
   void build_operator() {
     const auto sides = assembly::fracture_sides(*mesh_);
     op_ = std::make_unique<Op>(sides.size());
-    std::vector<int> n_faces(mesh_->n_cells(), 0);  // m of every cell
+    std::vector<int> n_faces(mesh_->n_cells(), 0);  // number m of fracture faces of each cell
     for (const auto& [f, side] : sides) ++n_faces[mesh_->fracture_faces[f].cell[side]];
     const auto coupling = Kokkos::create_mirror_view(op_->coupling), frame = Kokkos::create_mirror_view(op_->frame);
     const auto stiffness = Kokkos::create_mirror_view(op_->stiffness), bubble = Kokkos::create_mirror_view(op_->bubble);
@@ -180,7 +180,7 @@ class InterfaceTractionBalance final : public assembly::Module {
 
   const laws::Elasticity& law(LocalIndex cell) const { return parameters_.elasticity.of_cell(*mesh_, cell); }
 
-  /// Integrates the coupling of a face's bubble with the cell's nodes, coupling(i, a dim + j).
+  /// Integrates the coupling of the bubble of a face with the nodes of the cell, coupling(i, a dim + j).
   template <class Coupling>
   void integrate(LocalIndex cell, int local_face, const Coupling& coupling) const {
     Real X[n][dim], dN[n][dim], db[dim];

@@ -18,10 +18,10 @@ namespace {
 using Value = JointMaterial::Value;
 using laws::Entry;
 
-/// What a kind says about itself. Entries of the same number are alternatives.
+/// Description of a law. Entries with the same number are alternatives.
 struct Kind {
   std::string name, meaning;
-  bool flat;  // for two dimensions alone
+  bool flat;  // available in 2D only
   std::vector<Entry> entries;
   std::vector<int> number;  // of each entry
 };
@@ -49,7 +49,7 @@ std::vector<Kind> kinds(const laws::Kinds<Ks...>&) {
   return {kind<Ks>()...};
 }
 
-/// A part of the joint's law, and the kinds that it may be.
+/// Part of the joint law, and the laws available for it.
 struct Role {
   std::string name, meaning;
   std::string JointMaterial::*chosen;
@@ -65,7 +65,7 @@ struct Role {
       if (one.name == material.*chosen) return &one;
     return nullptr;
   }
-  /// Of all kinds, each name once.
+  /// Entries of all laws of this part, each name once.
   std::vector<Entry> entries() const {
     std::vector<Entry> all;
     for (const auto& one : kinds)
@@ -81,7 +81,7 @@ struct Role {
         if (other.name == entry) with.push_back(one.name);
     return with;
   }
-  /// Those that need this very entry.
+  /// Names of the laws that require this entry and accept no alternative.
   std::vector<std::string> kinds_that_need(const std::string& entry) const {
     std::vector<std::string> needed;
     for (const auto& one : kinds)
@@ -108,7 +108,7 @@ const std::vector<Role>& roles() {
   return all;
 }
 
-/// `Coulomb: in proportion to the compression; Barton-Choubey: ...`
+/// Text for the reference: `Coulomb: in proportion to the compression; Barton-Choubey: ...`
 std::string meaning_of(const Role& role) {
   std::string text = role.meaning;
   for (const auto& one : role.kinds) text += fmt::format("; {}: {}", one.name, one.meaning);
@@ -123,7 +123,7 @@ const Entry* entry_of(const Kind& kind, const std::string& name) {
 
 bool vanishes(const Value& value) { return value.is_constant() && value({}, 0) == 0; }
 
-/// Calls visit(entry, value) for the entries that the chosen kinds have and the material gives.
+/// Calls visit(entry, value) for the given entries of the selected laws.
 template <class Visit>
 void for_each_given(const JointMaterial& material, const Visit& visit) {
   for (const auto& role : roles())
@@ -132,7 +132,7 @@ void for_each_given(const JointMaterial& material, const Visit& visit) {
         if (const auto& value = material.entry(entry.name)) visit(entry, *value);
 }
 
-/// Calls visit(names of the alternatives, which of them are given) for each number of the chosen kinds that needs one.
+/// Calls visit(names of the alternatives, given names, whether one is required) for each number of the selected law.
 template <class Visit>
 void for_each_number(const JointMaterial& material, const Role& role, const Visit& visit) {
   const auto* chosen = role.kind_of(material);
@@ -150,7 +150,7 @@ void for_each_number(const JointMaterial& material, const Role& role, const Visi
   }
 }
 
-/// `give either "friction coefficient" or "friction angle"`
+/// Text of an error message: `give either "friction coefficient" or "friction angle"`.
 std::string give_one_of(const std::vector<std::string>& names) {
   std::string text = "give either ";
   for (std::size_t k = 0; k < names.size(); ++k)
@@ -158,7 +158,7 @@ std::string give_one_of(const std::vector<std::string>& names) {
   return text;
 }
 
-/// `, or friction "no slip"`: the kinds of a role that need no entry.
+/// Text of an error message: `, or friction "no slip"`, for the laws of a part without entries.
 std::string or_without_entries(const Role& role) {
   std::string text;
   for (const auto& one : role.kinds)
@@ -166,8 +166,8 @@ std::string or_without_entries(const Role& role) {
   return text;
 }
 
-/// `friction "Barton-Choubey", required`, `dilation "mobilised"` and so on: whose entry it is, but for roles all of
-/// whose kinds have it.
+/// Laws with this entry, e.g. `friction "Barton-Choubey", required` or `dilation "mobilised"`. Omits parts whose laws
+/// all have the entry.
 std::string owners_of(const std::string& entry, bool tell_required) {
   std::string text;
   for (const auto& role : roles()) {
@@ -179,7 +179,7 @@ std::string owners_of(const std::string& entry, bool tell_required) {
   return text;
 }
 
-/// The meaning in the reference tells whose entry it is.
+/// Declares an entry. Its meaning in the reference names the laws with this entry.
 void describe_entry(base::Section& s, const Role& role, const Entry& entry, std::optional<Value>& value, bool of_all) {
   if (of_all && !value && entry.otherwise) value = *entry.otherwise;
   const auto with = role.kinds_with(entry.name), needed = role.kinds_that_need(entry.name);
@@ -193,7 +193,7 @@ void describe_entry(base::Section& s, const Role& role, const Entry& entry, std:
     s.fail(entry.name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
 }
 
-/// `It belongs to friction "Coulomb"; here it is "Barton-Choubey"`
+/// Text of an error message: `It belongs to friction "Coulomb"; here it is "Barton-Choubey"`.
 std::string not_here(const JointMaterial& material, const std::string& entry) {
   std::vector<std::string> here;
   for (const auto& role : roles())
@@ -202,7 +202,7 @@ std::string not_here(const JointMaterial& material, const std::string& entry) {
                      base::quoted_list(here));
 }
 
-/// The entries of a role that no role before it has `described`: several may have entries in common.
+/// Declares the entries of a part, except those already `described`: several parts may share entries.
 void describe_role(base::Section& s, JointMaterial& material, const Role& role, bool of_all,
                    std::set<std::string>& described) {
   s.choice(material.*role.chosen, role.name, role.names(), meaning_of(role));
@@ -213,7 +213,7 @@ void describe_role(base::Section& s, JointMaterial& material, const Role& role, 
     const auto* own = chosen ? entry_of(*chosen, entry.name) : nullptr;
     auto& value = material.entry(entry.name);
     if (own && !value && own->otherwise) value = *own->otherwise;
-    // those of other kinds that a host has set are written, so that they are refused when they are read
+    // entries of other laws set by a host are declared too, so that reading them reports an error
     const bool is_set = value && !(entry.otherwise && value->text() == Value(*entry.otherwise).text());
     if (own || of_all || is_set) {
       describe_entry(s, role, own ? *own : entry, value, of_all);
@@ -226,7 +226,7 @@ void describe_role(base::Section& s, JointMaterial& material, const Role& role, 
   }
 }
 
-/// The entries that hosts set by name in the code.
+/// Members for entries that hosts set by name in C++ code; null: none.
 std::optional<Value> JointMaterial::*member_of(const std::string& entry) {
   using Material = JointMaterial;
   const std::pair<const char*, std::optional<Value> Material::*> members[] = {
@@ -251,7 +251,7 @@ constexpr bool has_defect = false;
 template <class K>
 constexpr bool has_defect<K, std::void_t<decltype(std::declval<K>().defect())>> = true;
 
-/// The law K with the material's values at x.
+/// Law K with the values of the material at x. Throws an Error for inconsistent values.
 template <class K>
 K law_at(const JointMaterial& material, const JointMaterial::Point& x) {
   K law;
@@ -277,11 +277,11 @@ void set_part(Part& part, const laws::Kinds<Ks...>&, const std::string& kind, co
 
 Real degrees(Real tangent) { return std::atan(tangent) * 180 / M_PI; }
 
-/// Tells where slip that begins at rest would do work instead of taking it: where friction bears less than dilation
-/// lifts, b < N dg/ds. Asked of laws with histories, at some slips and compressions; empty where it is nowhere found.
+/// Error message if slip from rest would release energy, i.e. if friction is below the work of dilation: b < N dg/ds.
+/// Checks laws with history variables at some slips and compressions; empty: no error found.
 std::string gain_by_slip(const laws::Joint& law) {
   if (law.n_history() == 0) return "";
-  const Real zero = 0;  // all that laws have kept
+  const Real zero = 0;  // all history variables
   for (const Real compression : {1.0, 1e3, 1e5, 1e6, 1e7})
     for (const Real slip : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
       const laws::Contact<Real> at{.lambda_n = -compression,
@@ -347,7 +347,7 @@ void JointMaterial::compare_entries(base::Section& s) const {
   if (!s.complete() || !is_uniform() || !missing().empty()) return;
   try {
     joint({});
-  } catch (const Error& error) {  // what only the numbers together tell
+  } catch (const Error& error) {  // errors of combined values
     s.fail(error.what());
   }
 }
@@ -405,7 +405,7 @@ JointParameters JointMaterial::joint(const Point& x) const {
   set_part(joint.law.driver, laws::DriverKinds(), damage_driver, *this, x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.strength = 1 / strength_reduction;
-  const Real zero = 0;  // all that laws have kept
+  const Real zero = 0;  // all history variables
   laws::Contact<Real> at_rest;
   at_rest.history = {&zero, 0};
   const Real dilates = dilation_slope(joint.law, at_rest);
@@ -442,7 +442,7 @@ std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Re
   set_part(law.friction, laws::FrictionKinds(), friction, *this, {});
   Slope slope{-std::numeric_limits<Real>::infinity(), true, 0};
   Real first = 0;
-  constexpr int n = 40;  // compressions, evenly spaced in their logarithm
+  constexpr int n = 40;  // number of compressions, evenly spaced on a logarithmic scale
   for (int k = 0; k <= n; ++k) {
     const Real compression = least * std::pow(largest / least, Real(k) / n), here = bound_slope(law, compression);
     if (k == 0) first = here;

@@ -12,8 +12,8 @@ using assembly::Loop;
 
 namespace {
 
-/// Means over a face of psi of the nodes of a side, in the order of face.nodes. A fracture that ends on this one has
-/// its tip on one side only.
+/// Face means of psi for the nodes of a side, in the order of face.nodes. If the fracture ends at another one, the tip
+/// is on one side only.
 assembly::FaceValues tip_shares(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, int side,
                                 const std::shared_ptr<assembly::TipRules>& rules) {
   assembly::FaceValues shares{};
@@ -108,8 +108,8 @@ class OperatorsOf final : public JointOperators<Face::dim> {
 
   Face face_;
   Faces faces_;
-  std::unique_ptr<Sliding> sliding_;  // where the power of friction is stored
-  ConstView<Real*> area_;             // [local face] m^2, there
+  std::unique_ptr<Sliding> sliding_;  // null: no power of friction
+  ConstView<Real*> area_;             // [local face] m^2; only with sliding_
 };
 
 }  // namespace

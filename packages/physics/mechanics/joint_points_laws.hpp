@@ -1,4 +1,4 @@
-// The functions of JointPoints, by all laws of joints; derivatives by Sacado.
+// Member functions of JointPoints for all joint laws, with derivatives by Sacado.
 #pragma once
 
 #include "laws/joint.hpp"
@@ -9,7 +9,7 @@
 
 namespace sprekk::physics {
 
-/// A number with derivatives in w, then in lambda.
+/// Value with derivatives in w, then in lambda.
 template <int dim>
 using JointFad = Sacado::Fad::SFad<Real, 2 * dim>;
 
@@ -22,9 +22,9 @@ KOKKOS_INLINE_FUNCTION void seed(const Real (&w)[dim], const Real (&lambda)[dim]
   }
 }
 
-/// The part of the traction that contact and friction bear, and the jump that goes with it: the proximal term bears
-/// tether c (w_n - anchor) of the normal traction, and tether c (p - anchor) of the tangential one, which still
-/// stretches the joint as a whole: p = w_t - lambda_t/K_t, K_t being that at first loading.
+/// Computes the traction of contact and friction, and the corresponding jump, without the proximal term. The proximal
+/// term carries tether c (w_n - anchor) of the normal traction and tether c (p - anchor) of the tangential traction,
+/// with p = w_t - lambda_t/K_t and the initial K_t. The tangential elasticity acts on the whole traction.
 template <int dim>
 template <class T>
 KOKKOS_INLINE_FUNCTION void JointPoints<dim>::contact(int f, const T (&w)[dim], const T (&traction)[dim],

@@ -8,7 +8,7 @@ namespace {
 
 using Fad1 = Sacado::Fad::SFad<Real, 1>;
 
-/// The contact with derivatives in what `seed` sets.
+/// Copy of the contact state with derivatives set by `seed`.
 template <class Seed>
 laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& seed) {
   laws::Contact<Fad1> with;
@@ -28,7 +28,7 @@ laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& se
   return with;
 }
 
-/// Slip goes on in its direction; where it has none, along the plastic jump, or else along the first tangent.
+/// Seeds further slip in its direction; without slip along the plastic jump, or along the first tangent.
 void along_slip(laws::Contact<Fad1>& at) {
   const Real jumps[2] = {at.plastic_jump[0].val(), at.plastic_jump[1].val()}, size = laws::norm(jumps);
   Real direction[2] = {at.slip_direction[0].val(), at.slip_direction[1].val()};

@@ -17,16 +17,16 @@ namespace sprekk::physics {
 
 namespace {
 
-/// Mean over a fracture face whose cell on side minus is local.
+/// Mean over a fracture face. The cell on side minus must be local.
 Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const base::Expression& value) {
   return assembly::face_mean(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
                              [&](const auto&, const auto& x) { return value(x, 0); });
 }
 
-/// The law of a face is that at its centre, with the mean of its gap and of the jump that it starts with: jumps are
-/// means, too.
+/// Joint parameters of faces: the law at the face centre, with the face means of the gap and of the initial plastic
+/// jump, since jumps are means too.
 Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
-  const bool own = !scene.own_joints.empty();  // groups are single fractures then, else sets
+  const bool own = !scene.own_joints.empty();  // groups: single fractures or fracture sets
   const auto section = [&](int group) -> const Fracture& {
     return scene.fractures.at(mesh.fracture_names[own ? mesh.single_fractures[group].set : group]);
   };
@@ -73,7 +73,7 @@ BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
   return force;
 }
 
-/// In the fractures; of a fluid that flows its pressure at the start.
+/// Prescribed fluid pressure in fractures; with flow, the initial pressure.
 FluidPressure fluid_pressure(const Scene& scene, const std::vector<std::string>& fracture_names) {
   FluidPressure fluid;
   if (has_fluid(scene)) {
@@ -89,7 +89,7 @@ FluidPressure fluid_pressure(const Scene& scene, const std::vector<std::string>&
   return any ? fluid : FluidPressure();
 }
 
-/// The field that takes the power of friction, empty: none.
+/// Field that receives the power of friction; empty: none.
 std::string power_to(const Scene& scene) {
   std::string field;
   for_each_physics([&](auto physics) {
@@ -98,7 +98,7 @@ std::string power_to(const Scene& scene) {
   return field;
 }
 
-/// Splits the elasticity of cells of an order.
+/// Applies VolumetricSplit to all cells. Returns the remaining moduli.
 Properties<Real> split(Properties<laws::Elasticity>& elasticity, int order) {
   Properties<Real> modulus{{}, elasticity.number};
   for (auto& law : elasticity.values) {
@@ -147,7 +147,8 @@ std::vector<base::Expression> lithostatic_stress(const Scene& scene) {
   const auto& [surface, horizontal_ratio] = *scene.bulk.lithostatic_stress;
   const auto& gravity = scene.bulk.gravity;
   const int dim = static_cast<int>(gravity.size()), up = dim - 1;
-  const Real weight = -(*scene.material_of("bulk").density)({0, 0, 0}, 0) * gravity[up];  // positive: it points down
+  const Real weight = -(*scene.material_of("bulk").density)({0, 0, 0}, 0) * gravity[up];  // positive: gravity points
+                                                                                          // down
   std::vector<base::Expression> stress(dim == 2 ? 4 : 6, base::Expression(0));
   for (int i = 0; i < 3; ++i) {
     const Real factor = weight * (i == up ? 1 : horizontal_ratio);
@@ -157,7 +158,7 @@ std::vector<base::Expression> lithostatic_stress(const Scene& scene) {
   return stress;
 }
 
-/// Whether fractures end inside of the rock; not known of plain tips with periodic sides. Collective.
+/// Returns whether fractures end inside of the rock; false if unknown (plain tips with periodic sides). Collective.
 bool has_tips(const mesh::Mesh& mesh) {
   const auto has = [](const std::vector<char>& tips) { return std::find(tips.begin(), tips.end(), 1) != tips.end(); };
   if (base::any_rank(*mesh.comm, [&] { return has(mesh.tip); })) return true;
@@ -179,7 +180,7 @@ bool has_solid_pressure(const Scene& scene, int order) {
       return false;
     try {
       return VolumetricSplit(rock->second.elasticity({}), order).modulus > 0;
-    } catch (const Error&) {  // told where materials are looked at
+    } catch (const Error&) {  // reported when materials are checked
       return false;
     }
   };
@@ -214,7 +215,7 @@ Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh) {
 std::vector<base::Expression> PrincipalStress::stress(int dim) const {
   const char up = "xyz"[dim - 1];
   const Real s = std::sin(azimuth * M_PI / 180), c = std::cos(azimuth * M_PI / 180);
-  /// -(a largest + b smallest + v vertical) at a point
+  /// Returns -(a largest + b smallest + v vertical) as an expression.
   const auto sum = [&](Real a, Real b, Real v) {
     const Real value = a * largest.value + b * smallest.value + v * vertical.value,
                gradient = a * largest.gradient + b * smallest.gradient + v * vertical.gradient;
@@ -260,7 +261,7 @@ std::vector<StartOfFace> starts_of_faces(const Setting& setting) {
     const auto parameters = jump_parameters(setting.mesh, parameters_of(setting));
     if (parameters.initial_stress.empty()) return;
     const auto tractions = initial_tractions(setting.mesh, parameters);
-    const Real zero = 0;  // all that laws have kept
+    const Real zero = 0;  // all history variables
     for (LocalIndex f = 0; f < setting.mesh.n_owned_fracture_faces; ++f) {
       const auto& joint = parameters.joints[parameters.joint_of_face.empty() ? setting.mesh.fracture_faces[f].fracture
                                                                              : parameters.joint_of_face[f]];

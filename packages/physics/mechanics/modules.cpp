@@ -14,14 +14,14 @@ namespace sprekk::physics {
 
 namespace {
 
-/// How many numbers joints keep of a face, at most. Collective.
+/// Largest number of history variables per face. Collective.
 int most_kept(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
   int here = 0;
   for (const auto& joint : joints) here = std::max(here, joint.law.n_history(mesh.dim()));
   return base::max_over_ranks(*mesh.comm, here);
 }
 
-/// What joints of any rank tell of a face. Collective.
+/// Quantities that joints of any rank provide. Collective.
 std::vector<laws::JointQuantity> told_quantities(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
   const auto all = laws::joint_quantities();
   std::vector<Real> told(all.size());
@@ -36,7 +36,7 @@ std::vector<laws::JointQuantity> told_quantities(const mesh::Mesh& mesh, const s
   return result;
 }
 
-/// Springs that are elsewhere are others. Names of histories have no "/".
+/// Name of a spring module, unique for its location. History names must not contain "/".
 std::string module_name(const std::string& condition, const mesh::Mesh& mesh,
                         const ElasticFoundationParameters& foundation) {
   auto name = fmt::format("elastic foundation of {} on {}", condition, mesh.boundary_names[foundation.boundary]);

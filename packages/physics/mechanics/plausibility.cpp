@@ -1,4 +1,4 @@
-// What scenes ask of mechanics and hardly mean.
+// Warnings about implausible mechanical input.
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
@@ -24,7 +24,8 @@ namespace {
 
 constexpr Real huge = std::numeric_limits<Real>::max();
 
-/// The largest of values and where it is; of equal ones the place with the least x, then y, then z, on any ranks.
+/// Largest value and its position. Among equal values, the smallest position counts (x, then y, then z), on any
+/// partition.
 struct Extreme {
   Real value = -huge;
   mesh::Vector x{};
@@ -34,7 +35,7 @@ struct Extreme {
   }
 };
 
-/// The largest over all ranks, element by element.
+/// Replaces each element by the largest over all ranks. Collective.
 void take_largest(const Comm& comm, std::vector<Extreme>& all) {
   std::vector<Real> value;
   for (const auto& one : all) value.push_back(one.value);
@@ -53,7 +54,7 @@ void take_largest(const Comm& comm, std::vector<Extreme>& all) {
   for (std::size_t k = 0; k < all.size(); ++k) all[k].value = most[k];
 }
 
-/// Calls look(), which errors of expressions end: a step that gets there tells them. Not collective.
+/// Calls look() and ignores errors of expressions, which the first affected step reports. Not collective.
 template <class Look>
 void looking(const Look& look) {
   try {
@@ -62,7 +63,7 @@ void looking(const Look& look) {
   }
 }
 
-/// At most twelve of the times, the last among them.
+/// At most twelve of the times, including the last one.
 std::vector<Real> some_of(const std::vector<Real>& times) {
   constexpr std::size_t most = 12;
   std::vector<Real> some;
@@ -71,7 +72,7 @@ std::vector<Real> some_of(const std::vector<Real>& times) {
   return some;
 }
 
-/// Calls use(face centre, piece of rock) for owned faces on which a condition holds.
+/// Calls use(face centre, piece of rock) for owned faces of a condition.
 template <class Use>
 void for_each_face_of(const mesh::Mesh& mesh, const BoundaryCondition& condition, const Use& use) {
   for (const auto& face : mesh.boundary_faces)
@@ -80,11 +81,11 @@ void for_each_face_of(const mesh::Mesh& mesh, const BoundaryCondition& condition
       use(mesh::face_centre(mesh::face_corners(mesh, face.cell, face.local_face)), mesh.cell_piece[face.cell]);
 }
 
-/// Displacements of pieces of rock between fractures, which may slide past each other: at [2 piece] the largest, at
-/// [2 piece + 1] the negative of the smallest.
+/// Displacements of pieces of rock between fractures, which may slide relative to each other: the largest at [2 piece],
+/// the negative of the smallest at [2 piece + 1].
 using PieceExtremes = std::vector<Extreme>;
 
-/// Takes up what conditions give in direction i at time t, those that are constant in time or the others. Not
+/// Adds the prescribed displacements in direction i at time t, either those constant in time or the others. Not
 /// collective.
 void add_displacements(const Setting& setting, int i, Real t, bool constant, PieceExtremes& all) {
   looking([&] {
@@ -100,7 +101,7 @@ void add_displacements(const Setting& setting, int i, Real t, bool constant, Pie
   });
 }
 
-/// Whether conditions give a displacement in direction i that changes with time.
+/// Returns whether a prescribed displacement in direction i depends on time.
 bool moves(const Scene& scene, int i) {
   return std::any_of(scene.boundary_conditions.begin(), scene.boundary_conditions.end(), [&](const auto& one) {
     const auto& u = one.second.displacement;
@@ -108,7 +109,7 @@ bool moves(const Scene& scene, int i) {
   });
 }
 
-/// Displacements on a piece of rock that differ by more than 5 % of the distance between them.
+/// Warns about displacements of a piece of rock that differ by more than 5 % of their distance. Collective.
 std::string strain_doubt(const Setting& setting, const std::vector<Real>& times) {
   constexpr Real most = 0.05;
   struct {
@@ -137,7 +138,7 @@ std::string strain_doubt(const Setting& setting, const std::vector<Real>& times)
                      "check the unit of the displacements and of the lengths");
 }
 
-/// The least Young's modulus of the rocks that are numbers; 0 if none is.
+/// Smallest Young's modulus of the rocks with constant values, Pa; 0: none.
 Real least_modulus(const Scene& scene) {
   Real least = 0;
   for (const auto& [name, material] : scene.materials) {
@@ -148,7 +149,7 @@ Real least_modulus(const Scene& scene) {
   return least;
 }
 
-/// Stresses above Young's modulus.
+/// Warns about stresses above Young's modulus. Collective.
 std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
   const auto& [scene, mesh, start] = setting;
   const Real E = least_modulus(scene);
@@ -178,7 +179,7 @@ std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
                      E < 1e4 ? "write the unit behind the modulus, as in \"50 GPa\"" : "check both units");
 }
 
-/// Confining pressures that pull. Collective.
+/// Warns about confining pressures in tension. Collective.
 std::string confining_doubt(const Setting& setting, const std::vector<Real>& times) {
   const auto& [scene, mesh, start] = setting;
   for (const auto& [name, condition] : scene.boundary_conditions) {
@@ -198,7 +199,7 @@ std::string confining_doubt(const Setting& setting, const std::vector<Real>& tim
   return "";
 }
 
-/// What is doubted of an entry of a joint.
+/// Parts of a warning about a joint entry.
 struct Doubt {
   std::string entry, what, why, advice;
 };
@@ -208,7 +209,8 @@ Real number(const Material& joint, const std::string& entry) {
   return value && value->is_constant() ? (*value)({}, 0) : 0;
 }
 
-/// Stiffnesses that are GPa/m or MPa/m without their prefix, beside rock with this modulus, Pa, and size, m.
+/// Warns about stiffnesses with a missing prefix (GPa/m, MPa/m), given Young's modulus of the rock, Pa, and the domain
+/// size, m.
 std::vector<Doubt> stiffness_doubts(const Material& joint, Real E, Real size) {
   std::vector<Doubt> all;
   for (const char* entry : {"tangential stiffness", "normal stiffness"}) {
@@ -220,7 +222,7 @@ std::vector<Doubt> stiffness_doubts(const Material& joint, Real E, Real size) {
   return all;
 }
 
-/// Coefficients above 1.5, angles that are radians, dilation beyond friction, damage without lengths.
+/// Warns about friction coefficients above 1.5, angles in radians, dilation above friction, and damage without lengths.
 std::vector<Doubt> strength_doubts(const Material& joint) {
   std::vector<Doubt> all;
   if (const Real mu = number(joint, "friction coefficient"); mu > 1.5)
@@ -250,13 +252,14 @@ std::vector<Doubt> strength_doubts(const Material& joint) {
   return all;
 }
 
-/// Of joints of the scene, and of the entries that single fractures have of their own: of each entry the first one.
+/// Warnings about joints of the scene and about individual entries of single fractures, with the first fracture per
+/// entry.
 std::vector<std::string> joint_doubts(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   const Real E = least_modulus(scene), size = mesh::largest_extent(mesh);
   const auto doubts = [&](const Material& joint) {
     auto all = stiffness_doubts(joint, E, size);
-    if (joint.source) return all;  // with a source it has been looked at
+    if (joint.source) return all;  // values with a source are trusted
     for (auto& doubt : strength_doubts(joint)) all.push_back(std::move(doubt));
     return all;
   };
@@ -268,7 +271,7 @@ std::vector<std::string> joint_doubts(const Setting& setting) {
                                 why, advice));
       told.insert(entry + what);
     }
-  std::map<std::string, std::pair<Doubt, std::vector<int>>> own;  // by entry, with its single fractures
+  std::map<std::string, std::pair<Doubt, std::vector<int>>> own;  // [entry] warning and its single fractures
   for (const auto& [single, joint] : scene.own_joints)
     for (const auto& doubt : doubts(joint))
       if (!told.count(doubt.entry + doubt.what))
@@ -284,7 +287,7 @@ std::vector<std::string> joint_doubts(const Setting& setting) {
   return all;
 }
 
-/// The largest eigenvalue of a symmetric tensor XX, YY, ZZ, XY[, YZ, XZ].
+/// Largest eigenvalue of a symmetric tensor XX, YY, ZZ, XY[, YZ, XZ].
 Real largest_principal(const std::vector<Real>& s) {
   const Real xy = s[3], yz = s.size() > 4 ? s[4] : 0, xz = s.size() > 4 ? s[5] : 0;
   const Real mean = (s[0] + s[1] + s[2]) / 3, a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
@@ -294,13 +297,13 @@ Real largest_principal(const std::vector<Real>& s) {
   return mean + 2 * p * std::cos(std::acos(std::clamp(det / (2 * p * p * p), Real(-1), Real(1))) / 3);
 }
 
-/// Initial stress in tension somewhere.
+/// Warns about initial stress in tension. Collective.
 std::string tension_doubt(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   const auto initial = initial_stress(scene, mesh);
   if (initial.empty()) return "";
   std::vector<Extreme> highest(1);
-  std::array<Real, 2> volumes{};  // of cells in tension, of all
+  std::array<Real, 2> volumes{};  // numbers of cells in tension, of all cells
   Real compression = 0;
   looking([&] {
     for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell) {
@@ -328,8 +331,8 @@ std::string tension_doubt(const Setting& setting) {
       "check signs and, of a \"lithostatic stress\", the \"surface\", of an \"in-situ stress\" the \"datum\"");
 }
 
-/// Horizontal stresses whose names are exchanged at the foot of the mesh, and a vertical one that is not the weight.
-/// Collective.
+/// Warns if horizontal stresses are zero, or their order is reversed at the bottom of the mesh, or if the vertical
+/// stress differs from the weight. Collective.
 std::string in_situ_doubt(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   const auto& stress = scene.bulk.in_situ_stress;
@@ -363,7 +366,7 @@ std::string in_situ_doubt(const Setting& setting) {
                      "the difference moves the rock at the start", "check \"density\" and \"gravity\"");
 }
 
-/// Fractures beyond their strength at the start.
+/// Warns about fractures whose initial stress exceeds their strength. Collective.
 std::string strength_doubt(const Setting& setting) {
   const auto& mesh = setting.mesh;
   if (initial_stress(setting.scene, mesh).empty()) return "";

@@ -1,4 +1,4 @@
-// Patches of cells around nodes, and what recovers stress in them from samples.
+// Patches of cells around nodes, and the recovery of stress from samples on them.
 #pragma once
 
 #include "assembly/loop.hpp"
@@ -15,9 +15,9 @@
 
 namespace sprekk::physics {
 
-/// The points of a cell where the stress is most accurate, or at least not worst: the centre at order 1; at order 2 two
-/// points per direction, in simplices the middles of edges. Cells with a tip have 2 points per direction or dim + 1
-/// inside of them.
+/// Sample points of a cell, at or near the points of highest stress accuracy. Order 1: the centre. Order 2: two points
+/// per direction, or the edge midpoints of simplices. Cells with a tip: two points per direction, or dim + 1 interior
+/// points of simplices.
 template <mesh::Shape shape>
 struct SamplePoints {
   static constexpr int dim = mesh::dimension(shape);
@@ -43,9 +43,10 @@ struct SamplePoints {
   }
 };
 
-/// Around every corner node of the cells of one region those that share it; around crack tips (mesh::Mesh::tip) these
-/// alone have the cells with a tip. Each has functions: polynomials of the displacement's order for all components;
-/// around tips linear ones and the modes of a crack (TipModes). Their coefficients fit samples by least squares.
+/// Patches and their functions. A patch consists of the cells of one region that share a corner node. Cells with a tip
+/// belong only to the patches of their tips (mesh::Mesh::tip). The functions are polynomials of the order of the
+/// displacement for all components. At tips they are linear functions and crack modes (TipModes). The coefficients are
+/// fitted to samples by least squares.
 template <mesh::Shape shape>
 class RecoveryPatches {
  public:
@@ -77,7 +78,7 @@ class RecoveryPatches {
 
     Point(const mesh::Mesh& mesh, LocalIndex cell, const Real (&xi)[dim], const Tip* tip)
         : Point(Nodes(mesh, cell, xi), xi, tip) {}
-    /// Of the face function of one of the cell's faces, in space.
+    /// Computes the spatial gradient of the face function of a face of the cell.
     void bubble(int local_face, Real (&gradient)[dim]) const {
       Real db[dim];
       Cell::bubble(local_face, xi, db);
@@ -109,7 +110,7 @@ class RecoveryPatches {
     }
   };
 
-  /// The functions of a patch at a point of one of its cells.
+  /// Values of the functions of a patch at a point of one of its cells.
   struct Functions {
     Terms terms;
     Modes modes{};
@@ -134,7 +135,7 @@ class RecoveryPatches {
     }
   };
 
-  /// Collective.
+  /// Builds the patches. Throws an Error if a fit is singular. Collective.
   RecoveryPatches(RCP<const mesh::Mesh> mesh, Properties<laws::Elasticity> elasticity)
       : mesh_(mesh), elasticity_(std::move(elasticity)), tip_modes_(*mesh) {
     if constexpr (order == 1)
@@ -152,12 +153,11 @@ class RecoveryPatches {
   }
   const laws::Elasticity& law(LocalIndex cell) const { return elasticity_.of_cell(*mesh_, cell); }
   LocalIndex node(LocalIndex cell, int a) const { return mesh_->cells[cell * n_nodes + a]; }
-  /// The patch around a corner of a local cell; -1 where no owned cell needs it, and at the other corners of a cell
-  /// with a tip.
+  /// Patch around a corner of a local cell; -1: no owned cell needs it, or the cell has a tip elsewhere.
   int patch(LocalIndex cell, int corner) const { return patch_of_corner_[cell * n_corners + corner]; }
 
-  /// What the patches of an owned cell's corners count for at a reference point; they sum to 1: linear shape functions
-  /// of corners inside of their patches, or of all where there are none of these.
+  /// Weights of the patches of an owned cell at a reference point. They sum to 1. They are proportional to the linear
+  /// shape functions of the corners in the interior of their patches; without such corners, of all corners.
   std::array<Real, n_corners> weights(LocalIndex cell, const Real (&xi)[dim]) const {
     Real N[n_corners], sum = 0;
     Corners::shape_functions(xi, N);
@@ -187,7 +187,7 @@ class RecoveryPatches {
     }
   }
 
-  /// Of patch p at a point of one of its cells.
+  /// Functions of patch p at a point of one of its cells.
   Functions functions(LocalIndex cell, int p, const Point& point) const {
     Functions f{terms(patches_[p], point.x)};
     if (patches_[p].tip < 0) return f;
@@ -204,12 +204,12 @@ class RecoveryPatches {
     }
     return f;
   }
-  /// From sums over the samples to coefficients.
+  /// Computes the coefficients from the sums over samples.
   void solve(Fits& fits) const {
     for (std::size_t p = 0; p < fits.size(); ++p) solve(static_cast<int>(p), fits[p].polynomial);
   }
 
-  /// Adds up what the ranks have for each patch.
+  /// Sums the fits of each patch over all ranks. Collective.
   void sum_over_ranks(Fits& fits) const {
     constexpr int n = sizeof(Fit) / sizeof(Real);
     static_assert(n == Tensor::n * n_terms + n_modes);
@@ -232,15 +232,15 @@ class RecoveryPatches {
  private:
   struct Patch {
     std::array<Real, dim> centre;
-    std::array<Real, dim> size{};                  // largest distances of samples, per direction
-    std::array<Real, n_terms * n_terms> factor{};  // Cholesky, of the normal equations
-    int tip = -1;                                  // number among those around tips
+    std::array<Real, dim> size{};                  // largest distances of samples from the centre, per direction
+    std::array<Real, n_terms * n_terms> factor{};  // Cholesky factor of the normal equations
+    int tip = -1;                                  // number in tips_; -1: no tip
   };
-  /// Modes are taken less the polynomials that fit them, and combined so that they are orthonormal at the samples.
+  /// Crack modes of a patch. Their polynomial fits are subtracted, and they are orthonormalised at the samples.
   struct TipPatch {
     LocalIndex node;
     std::array<Polynomial, n_modes> fit{};
-    std::array<Real, n_modes * n_modes> factor{};  // Cholesky, of their products; zero: there are none
+    std::array<Real, n_modes * n_modes> factor{};  // Cholesky factor of their products; zero: no modes
   };
 
   GlobalIndex patch_id(LocalIndex cell, int corner) const {
@@ -248,7 +248,8 @@ class RecoveryPatches {
            mesh_->cell_region[cell];
   }
   bool is_tip(LocalIndex cell, int corner) const { return !mesh_->tip.empty() && mesh_->tip[node(cell, corner)]; }
-  /// 1, the coordinates from the centre of the patch, their products; the latter are left to the modes at tips.
+  /// Polynomial terms: 1, the scaled coordinates relative to the centre, and their products. At tips the modes replace
+  /// the products.
   static Terms terms(const Patch& patch, const std::array<Real, dim>& x) {
     Terms q{1};
     for (int i = 0; i < dim; ++i) q[1 + i] = (x[i] - patch.centre[i]) / patch.size[i];
@@ -297,9 +298,9 @@ class RecoveryPatches {
     import_ = rcp(new const fields::Import(unique, map_));
   }
 
-  /// Which corners of owned cells are inside of their patch: neither on a fracture nor on the border of a region.
+  /// Finds the corners of owned cells in the interior of their patch: neither on a fracture nor on a region border.
   void find_inside() {
-    std::vector<int> region(mesh_->n_nodes(), -1);  // of the first cell; -2: on the border of one
+    std::vector<int> region(mesh_->n_nodes(), -1);  // region of the cells; -2: on a region border
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
       for (int k = 0; k < n_corners; ++k) {
         int& first = region[node(c, k)];
@@ -315,8 +316,8 @@ class RecoveryPatches {
         is_inside_.push_back(patch(c, k) >= 0 && !is_tip(c, k) && region[node(c, k)] >= 0);
   }
 
-  /// Normal equations of the fit. A multiple of the square of the highest terms is minimised, too: it decides where
-  /// there are too few points, and leaves fields of lower order as they are.
+  /// Factors the normal equations. A multiple of the squared highest-order coefficients is added. It makes the fit
+  /// unique with few samples and leaves fields of lower order unchanged.
   void factor() {
     for_each([&](LocalIndex, const Point& point, int p) {
       auto& patch = patches_[p];
@@ -350,7 +351,7 @@ class RecoveryPatches {
     Teuchos::LAPACK<int, Real>().POTRS('L', n_terms, Tensor::n, patches_[p].factor.data(), n_terms,
                                        right_sides[0].data(), n_terms, &info);
   }
-  /// Modes around tips: what polynomials have of them, and their products.
+  /// Fits polynomials to the modes at tips, and factors the products of the remainders.
   void fit_modes() {
     const auto for_each_mode = [&](const auto& visit) {
       if (!tips_.empty())
@@ -377,19 +378,19 @@ class RecoveryPatches {
       if (!cholesky<n_modes>(tip.factor)) tip.factor[0] = 0;
   }
 
-  /// Per patch, with coordinates scaled by its size. Quadratic terms follow what tetrahedra of order 2 get wrong more
-  /// closely than elsewhere.
+  /// Regularisation per sample, in coordinates scaled by the patch size. For order 2 it is larger on tetrahedra,
+  /// because the quadratic terms follow the stress errors of these cells more closely.
   static constexpr Real regularisation = order == 1 ? 0.3 : shape == mesh::Shape::tetrahedron10 ? 0.06 : 0.01;
 
   RCP<const mesh::Mesh> mesh_;
   Properties<laws::Elasticity> elasticity_;
   TipModes<dim, order> tip_modes_;
-  std::unordered_map<LocalIndex, Tip> tip_cells_;  // local cells with functions around tips
+  std::unordered_map<LocalIndex, Tip> tip_cells_;  // local cells with tip functions
   std::vector<Patch> patches_;                     // around the corners of owned cells
   std::vector<TipPatch> tips_;
   std::vector<char> is_inside_;       // [owned cell, corner]
   std::vector<int> patch_of_corner_;  // [local cell, corner], see patch()
-  RCP<const fields::Map> map_;        // of the patches; other ranks may have the same
+  RCP<const fields::Map> map_;        // map of the patches; several ranks may share a patch
   RCP<const fields::Import> import_;
 };
 

@@ -7,7 +7,7 @@ namespace sprekk::physics {
 
 namespace {
 
-/// rows += factor * history; [owned row], [owned entity, component]
+/// Computes rows += factor * history; [owned row], [owned entity, component].
 void add(Real factor, const View<Real**>& history, const View<Real*>& rows) {
   const int n = static_cast<int>(history.extent(1));
   Kokkos::parallel_for(
@@ -15,7 +15,7 @@ void add(Real factor, const View<Real**>& history, const View<Real*>& rows) {
       KOKKOS_LAMBDA(int i) { rows(i) += factor * history(i / n, i % n); });
 }
 
-/// history := rows + held * history, of which the rows have -held * history.
+/// Computes history := rows + held * history, where rows contain -held * history.
 void take(Real held, const View<Real*>& rows, const View<Real**>& history) {
   const int n = static_cast<int>(history.extent(1));
   Kokkos::parallel_for(
@@ -56,14 +56,14 @@ class Release final : public assembly::Module {
   void jacobian(const assembly::State&, fields::BlockMatrix&) const override {}
   bool constant_load() const override { return false; }
 
-  /// The residual has what is held of the history before.
+  /// Saves the unbalanced forces. The residual contains the part of the previous history that is not yet released.
   void take_unbalanced(assembly::State& state, const assembly::Rows& residual) const override {
-    if (std::abs(state.t - begin_) > 1e-9 * (end_ - begin_)) return;  // it is of a stage before
+    if (std::abs(state.t - begin_) > 1e-9 * (end_ - begin_)) return;  // from an earlier stage
     for (std::size_t k = 0; k < fields_.size(); ++k) take(held_at(state.t), residual[fields_[k]], state.history[k]);
   }
 
  private:
-  /// 1 - s
+  /// Returns 1 - s.
   Real held_at(Real t) const { return 1 - std::clamp<Real>((t - begin_) / (end_ - begin_), 0, 1); }
 
   Real begin_, end_;

@@ -19,7 +19,7 @@ using mesh::Shape;
 
 namespace {
 
-/// What a pressure makes of the volume of its cell.
+/// Compression of a cell by its pressure.
 ///
 /// | symbol     | shape  | unit           |                  |
 /// | x          | 1      | Pa             | p                |
@@ -34,7 +34,7 @@ struct PressedCell {
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[1], Real (&J)[1][1]) const { J[0][0] = -compliance(e); }
 };
 
-/// The bubble of the face between two cells, eliminated.
+/// Eliminated bubble of the face between two cells.
 ///
 /// | symbol | shape  | unit          |                               |
 /// | x      | 2      | Pa            | p_K, p_L                      |
@@ -55,7 +55,7 @@ struct BubbleBetween {
   }
 };
 
-/// Integrals over a cell of the normal bubble of a face: its outward volume, and its energy.
+/// Integrals of the normal bubble of a face over a cell: its outward volume and its energy.
 template <Shape shape>
 std::array<Real, 2> bubble_of(const mesh::Mesh& mesh, LocalIndex cell, int local_face, const laws::Elasticity& law) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
@@ -115,7 +115,7 @@ class SolidPressure final : public assembly::Module {
     add<PressedCell>(context, Loop::cells, {p_}, pressed_cells());
     add<BubbleBetween>(context, Loop::neighbours, {p_}, bubbles_between());
     const auto work = [&](Loop loop, int block, const View<Real**>& volume) {
-      terms_.push_back(make_volume_work(context, {loop, block, p_, volume}, false, -1));  // symmetric
+      terms_.push_back(make_volume_work(context, {loop, block, p_, volume}, false, -1));  // rate -1: symmetric
     };
     work(Loop::cells, u, cell_volumes(*mesh_, pressed));
     if (fractures_) work(Loop::fracture_sides, context.field("side bubble"), bubble_volumes(*mesh_, pressed));
@@ -135,7 +135,7 @@ class SolidPressure final : public assembly::Module {
         "schur", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) { rows(i) -= schur(i); });
   }
 
-  /// The inverse of the diagonal with what displacements add to it.
+  /// Adds the inverse of the diagonal, including the Schur complement of the displacements.
   void merit_weights(const assembly::Rows& weights) const override {
     const auto rows = weights[p_];
     const auto schur = schur_;
@@ -167,12 +167,12 @@ class SolidPressure final : public assembly::Module {
     return {compliance_};
   }
 
-  /// None where a region ends: pressures may jump there.
+  /// Bubbles between cells. No bubble at region borders, where pressures may be discontinuous.
   BubbleBetween bubbles_between() const {
     std::vector<Real> give;
     for (const auto& pair : assembly::neighbours(*mesh_)) {
       const auto [a, b] = pair;
-      const bool is_stiff = mesh::order(mesh_->shape) == 1 && mesh::is_simplex(mesh_->shape);  // without bubbles
+      const bool is_stiff = mesh::order(mesh_->shape) == 1 && mesh::is_simplex(mesh_->shape);  // locks without bubbles
       const Real weight = is_stiff ? 1.0 / mesh::n_faces(mesh_->shape) : 1;
       Real volume = 0, alpha = 0;
       for (const LocalIndex cell : pair) {
@@ -188,7 +188,7 @@ class SolidPressure final : public assembly::Module {
     return {assembly::to_device(give, "bubbles")};
   }
 
-  /// The number of the face that both have, in the first.
+  /// Local number of the common face of a pair in the given cell.
   int face_between(LocalIndex cell, const std::array<LocalIndex, 2>& pair) const {
     const int n_faces = mesh::n_faces(mesh_->shape);
     const LocalIndex* const of[] = {&mesh_->facets->of_cell[pair[0] * n_faces],
@@ -199,7 +199,7 @@ class SolidPressure final : public assembly::Module {
   }
 
   SolidPressureParameters parameters_;
-  bool fractures_, tips_;  // the mesh has some; enriched ones
+  bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
   int p_ = -1;
   ConstView<Real*> schur_;       // [owned cell] |K|/(lambda_0 + 2 G), m^3/Pa

@@ -45,7 +45,7 @@ class SpringOrigin final : public assembly::Module {
     if (keeps_) load_.add_to(r[displacement_], -1);
   }
 
-  /// f(u_0)
+  /// Computes f(u_0).
   void start_step(const assembly::State& state) override {
     if (!keeps_) return;
     fields::Vector owned(layout_->owned()), all(layout_->ghosted());
@@ -60,7 +60,7 @@ class SpringOrigin final : public assembly::Module {
     load_.set([&](const auto& load) { Kokkos::deep_copy(load, forces[displacement_]); });
   }
 
-  /// The traction.
+  /// Passes on the traction of the springs.
   void pass_on(const assembly::State& state,
                std::vector<std::pair<assembly::History, View<Real**>>>& histories) const override {
     histories.emplace_back(origin(dim_), of_sprung(state, [](Real k, Real u, Real u_0) { return k * (u - u_0); }));
@@ -74,7 +74,7 @@ class SpringOrigin final : public assembly::Module {
  private:
   static assembly::History origin(int dim) { return {"origin", fields::Entity::node, dim}; }
 
-  /// value(k, u, what is kept) where there is a spring, [owned node, component]; else 0.
+  /// Returns value(k, u, history) at springs, [owned node, component]; 0 elsewhere.
   template <class Value>
   View<Real**> of_sprung(const assembly::State& state, const Value& value) const {
     const View<Real**> result("of springs", layout_->n_owned_entities(), dim_);

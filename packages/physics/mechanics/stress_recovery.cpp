@@ -59,7 +59,7 @@ class Recovery final : public StressRecovery {
     patches_.solve(moments);
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_recovered(c, moments, to);
     u = {};
-    to = {};  // no view may outlive what it lets change
+    to = {};  // views must be released before the vectors are changed
     const auto all = base::sum_over_ranks(*mesh_->comm, squares);
     result.error = std::sqrt(all[0]);
     result.stress = std::sqrt(all[1]);
@@ -75,7 +75,7 @@ class Recovery final : public StressRecovery {
   using Displacement = ByField<typename fields::Vector::dual_view_type::t_host::const_type>;
   using Forces = ByField<typename fields::Vector::dual_view_type::t_host>;
 
-  /// The face function of a side in its cell.
+  /// Face function of a side in its cell.
   struct Bubble {
     int local_face;
     LocalIndex unknown;
@@ -84,7 +84,7 @@ class Recovery final : public StressRecovery {
 
   LocalIndex unknown(LocalIndex cell, int a) const { return mesh_->free_node(patches_.node(cell, a)) * dim; }
   LocalIndex tip_unknown(LocalIndex cell, int a) const { return mesh_->enriched[patches_.node(cell, a)] * dim; }
-  /// Adds the strain of a field's values times a function with gradient g.
+  /// Adds the strain of field values times a function with gradient g.
   template <class View>
   static void add_strain(const View& values, LocalIndex first, const Real (&g)[dim], Values& strain) {
     for (int k = 0; k < Tensor::n; ++k) {
@@ -92,7 +92,7 @@ class Recovery final : public StressRecovery {
       strain[k] += (values(first + i, 0) * g[j] + values(first + j, 0) * g[i]) / 2;
     }
   }
-  /// Stress of nodes and tips.
+  /// Stress of nodes and tips at a point.
   Values stress(LocalIndex cell, const Point& point, const Displacement& u) const {
     Values strain{};
     for (int a = 0; a < n_nodes; ++a) {
@@ -120,7 +120,7 @@ class Recovery final : public StressRecovery {
       if (i != j) forces(first + j, 0) += factor * s[k] * g[i];
     }
   }
-  /// Adds the forces factor * s : eps(v) of a stress s at a point on nodes and tips.
+  /// Adds the forces factor * s : eps(v) of a stress s at a point, on nodes and tips.
   void add_forces(LocalIndex cell, const Point& point, const Values& s, Real factor, const Forces& to) const {
     for (int a = 0; a < n_nodes; ++a) {
       add_force(to[nodal], unknown(cell, a), point.g[a], s, factor);
@@ -137,7 +137,7 @@ class Recovery final : public StressRecovery {
     }
   }
 
-  /// Calls visit(point, volume, weights) for the points of a rule in a cell, with the weights of its patches.
+  /// Calls visit(point, volume, weights) at quadrature points of a cell, with the weights of its patches.
   template <class Visit>
   void for_each_point(LocalIndex cell, const Visit& visit) const {
     const auto at = [&](const Real(&xi)[dim], Real reference) {
@@ -179,7 +179,7 @@ class Recovery final : public StressRecovery {
     return found == bubbles_.end() ? none : found->second;
   }
 
-  /// The functions of the patches that fit the stress of a displacement.
+  /// Fits the functions of the patches to the stress of a displacement.
   Fits fitted(const Displacement& u) const {
     Fits result(patches_.size());
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
@@ -193,9 +193,9 @@ class Recovery final : public StressRecovery {
     return result;
   }
 
-  /// Adds to the squares |s* - s_h|^2, |s*|^2 and the volume of a cell; with d = s* - s_h - s_b the moments of C^-1 d
-  /// with the functions of the patches; and the forces - integral d : eps(v), for bubbles - integral (s* - s_h) :
-  /// eps(v) + alpha beta.
+  /// Computes |s* - s_h|^2, |s*|^2 and the volume of a cell. With d = s* - s_h - s_b, adds the moments of C^-1 d with
+  /// the functions of the patches, and the forces - integral d : eps(v). The forces on bubbles are - integral (s* -
+  /// s_h) : eps(v) + alpha beta.
   void add_cell(LocalIndex c, const Displacement& u, const Fits& fit, Fits& moments, const Forces& to,
                 Real (&square)[3]) const {
     const auto& bubbles = bubbles_of(c);
@@ -224,7 +224,7 @@ class Recovery final : public StressRecovery {
     });
   }
 
-  /// Adds the forces integral (s* - s_h) : C^-1 s(v)*, for solved moments.
+  /// Adds the forces integral (s* - s_h) : C^-1 s(v)* for solved moments.
   void add_recovered(LocalIndex c, const Fits& moments, const Forces& to) const {
     patches_.for_each_sample(c, [&](const Point& point) {
       Values strain{};

@@ -16,7 +16,7 @@ using mesh::Shape;
 
 namespace {
 
-/// Elasticity between the two parts of the displacement in one cell with a tip.
+/// Elastic coupling of the nodal and tip displacements in one cell with a tip.
 ///
 /// | symbol  | shape                       | unit |                                              |
 /// | x, r    | u [node, dim], q [node, dim] | m, N | unknowns, forces                             |
@@ -25,7 +25,7 @@ namespace {
 template <Shape shape>
 struct EnrichedCell {
   using Cell = assembly::ReferenceCell<shape>;
-  static constexpr int dim = Cell::dim, n = Cell::n_nodes, q = n * dim;  // q: where it starts in x
+  static constexpr int dim = Cell::dim, n = Cell::n_nodes, q = n * dim;  // q: offset in x
   using Columns = assembly::Slots<assembly::Slot<n, dim>, assembly::Slot<n, dim>>;
   using Rows = Columns;
   static constexpr bool couples(int row, int column) { return row > 0 || column > 0; }
@@ -126,7 +126,7 @@ class TipEnrichment final : public assembly::Module {
   using Cells = assembly::Assembler<EnrichedCell<shape>>;
   using Sides = assembly::Assembler<BalancedSide<shape>>;
 
-  /// The unknowns at all nodes, zero where there are none.
+  /// Values at all nodes; zero without tip functions.
   std::vector<Real> shown(const assembly::State& state) const {
     const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[q_]);
     std::vector<Real> values;
@@ -140,7 +140,7 @@ class TipEnrichment final : public assembly::Module {
 
   Tip tip(LocalIndex cell) const { return {*mesh_, cell, rules_}; }
 
-  /// The block of nodes a and b.
+  /// Sets the block of nodes a and b.
   template <class Matrix>
   static void set_stiffness(const laws::Elasticity& elasticity, const Real (&moment)[n * dim][n * dim], int a, int b,
                             const Matrix& matrix) {
@@ -213,7 +213,7 @@ class TipEnrichment final : public assembly::Module {
     Kokkos::deep_copy(side_.push, push);
   }
 
-  /// The owned row of component i of a cell's enriched node, -1 where there is none.
+  /// Owned row of component i of an enriched node of a cell; -1: none.
   LocalIndex row(LocalIndex cell, int node, int i) const {
     const LocalIndex number = mesh_->enriched[mesh_->cells[cell * n + node]];
     return number < 0 || number >= mesh_->n_owned_enriched ? -1 : number * dim + i;
@@ -223,7 +223,7 @@ class TipEnrichment final : public assembly::Module {
     if (const LocalIndex at = row(cell, node, i); at >= 0) load(at) += value;
   }
 
-  /// Body force and initial stress.
+  /// Adds body force and initial stress.
   template <class Host>
   void add_volume_loads(LocalIndex cell, Real t, const Host& load) const {
     const auto& stress = parameters_.initial_stress;
@@ -269,7 +269,7 @@ class TipEnrichment final : public assembly::Module {
     }
   }
 
-  /// The traction of the initial stress that is no constant over the face, which the bulk alone carries.
+  /// Adds the deviation of the initial traction from its mean over the face, which the rock carries.
   template <class Host>
   void add_deviation(LocalIndex f, int side, const Host& load) const {
     const auto& face = mesh_->fracture_faces[f];
@@ -287,7 +287,7 @@ class TipEnrichment final : public assembly::Module {
                                   });
   }
 
-  /// The fluid pushes the sides apart with its mean pressure over the face.
+  /// Adds the mean fluid pressure over the face, which pushes the sides apart.
   template <class Push, class Host>
   void add_pressure(LocalIndex f, int side, Real t, const Push& push, const Host& load) const {
     const auto& face = mesh_->fracture_faces[f];
@@ -304,7 +304,7 @@ class TipEnrichment final : public assembly::Module {
   std::vector<LocalIndex> cell_of_;  // [entity of tip_cells]
   std::shared_ptr<assembly::TipRules> rules_ = std::make_shared<assembly::TipRules>();
   EnrichedCell<shape> cell_;
-  BalancedSide<shape> side_{0};  // its bubbles balance in InterfaceTractionBalance
+  BalancedSide<shape> side_{0};  // without bubbles: see InterfaceTractionBalance
   std::unique_ptr<Cells> cells_;
   std::unique_ptr<Sides> sides_;
   assembly::Load load_;  // N

@@ -44,7 +44,7 @@ class Unresolved {
     }
   }
 
-  /// Adds what is unresolved to the forces on the unknowns of one side of a face whose cell is owned.
+  /// Adds the forces of t* - lambda on one side of a face. The cell of the side must be owned.
   template <class Forces>
   void add(LocalIndex f, int side, const Forces& to) const {
     const auto& face = mesh_.fracture_faces[f];
@@ -57,14 +57,14 @@ class Unresolved {
     });
   }
 
-  /// Adds the forces of the traction itself, with the other sign.
+  /// Adds the forces of the traction itself, with opposite sign.
   template <class Forces>
   void add_itself(LocalIndex f, int side, const Forces& to) const {
     distribute(f, side, to, [&](int i, const auto&) { return traction_[2 * f + side][i]; });
   }
 
  private:
-  /// Adds +- integral t_i(x) v on a side, plus on side plus.
+  /// Adds +- integral t_i(x) v on a side; plus on side plus.
   template <class Forces, class Traction>
   void distribute(LocalIndex f, int side, const Forces& to, const Traction& t) const {
     const auto& face = mesh_.fracture_faces[f];
@@ -91,7 +91,7 @@ class Unresolved {
                 });
   }
 
-  /// <x>: nodes at quarter points move it off the face's centre.
+  /// Mean of x over a face. Nodes at quarter points shift it from the face centre.
   Vector mean_place(LocalIndex cell, int local_face) const {
     Vector sum{};
     Real total = 0;
@@ -103,9 +103,9 @@ class Unresolved {
     return sum;
   }
 
-  /// G_ij = dt_i/dx_j by least squares over the faces of the same fracture that share a node of this side; as small as
-  /// possible in directions in which there are none. Open ones tell nothing of it: where contact ends the traction does
-  /// not go on as a straight line.
+  /// Gradient G_ij = dt_i/dx_j by least squares over the faces of the same fracture that share a node of this side. It
+  /// is a minimum-norm solution in directions without neighbours. Open faces are excluded, because the traction is not
+  /// linear across the edge of contact.
   Matrix gradient(LocalIndex f, int side) const {
     const auto& face = mesh_.fracture_faces[f];
     std::vector<LocalIndex> neighbours;
@@ -138,12 +138,12 @@ class Unresolved {
   }
 
   const mesh::Mesh& mesh_;
-  std::vector<Vector> traction_;  // [local face, side], in global components, without that of the initial stress
-  std::vector<Real> size_;        // [local face] of the whole traction
+  std::vector<Vector> traction_;  // [local face, side] global components, minus the initial traction
+  std::vector<Real> size_;        // [local face] magnitude of the total traction
   std::map<LocalIndex, std::vector<LocalIndex>> faces_at_;
 };
 
-/// Calls add(unresolved, face, side, forces) for all sides whose cells are owned, and adds the forces.
+/// Calls add(unresolved, face, side, forces) for all sides with owned cells, and adds the forces. Collective.
 template <class Add>
 void add_forces(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
                 const fields::Layout& traction_layout, const InitialStress& initial, const fields::Vector& traction,
@@ -163,7 +163,7 @@ void add_forces(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& la
   });
   for (std::size_t k = 0; k < layouts.size(); ++k) {
     if (!layouts[k]) continue;
-    fields::Vector owned(layouts[k]->owned());  // an export adds what comes from other ranks, and replaces the rest
+    fields::Vector owned(layouts[k]->owned());  // doExport adds values of other ranks, but replaces own ones
     owned.doExport(local[k], *layouts[k]->import(), Tpetra::ADD);
     forces[k]->update(1, owned, 1);
   }

@@ -15,14 +15,14 @@ namespace sprekk::physics {
 
 namespace {
 
-/// The most compliant in compression and the stiffest in shear of a scene's rocks, if they are uniform.
+/// Bounds of all rocks of a scene: smallest lambda + 2 G and largest G; none if a rock is not uniform.
 std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
   if (!Mechanics::is_in(scene)) return {};
   std::vector<const Material*> rocks = {&scene.materials.at(scene.bulk.material)};
   for (const auto& [name, region] : scene.regions) rocks.push_back(&scene.material_of(name));
   Real shear = 0, uniaxial = std::numeric_limits<Real>::infinity();
   for (const auto* rock : rocks) {
-    if (!rock->has_elasticity()) continue;  // of no cell
+    if (!rock->has_elasticity()) continue;  // not used in any cell
     if (!rock->is_uniformly_elastic()) return {};
     const auto elasticity = rock->elasticity({});
     shear = std::max(shear, elasticity.G);
@@ -32,13 +32,13 @@ std::optional<laws::Elasticity> bounding_rock(const Scene& scene) {
   return laws::Elasticity{shear, uniaxial - 2 * shear};
 }
 
-/// A joint of fractures, and what messages call it.
+/// Joint of a fracture, and its name in messages.
 struct UsedJoint {
   const Material& material;
   std::string called;
 };
 
-/// That of a single fracture.
+/// Joint of a single fracture.
 UsedJoint used_joint(const Scene& scene, const mesh::Mesh& mesh, int single) {
   const auto& [name, set, properties] = mesh.single_fractures[single];
   const bool own = scene.own_joints.count(single) > 0;
@@ -47,7 +47,7 @@ UsedJoint used_joint(const Scene& scene, const mesh::Mesh& mesh, int single) {
               : fmt::format("\"{}\"", scene.fractures.at(mesh.fracture_names[set]).material)};
 }
 
-/// All that there are, each once.
+/// All joints in use, each once.
 std::vector<UsedJoint> used_joints(const Scene& scene, const mesh::Mesh& mesh) {
   std::set<const Material*> known;
   std::vector<UsedJoint> all;
@@ -56,18 +56,17 @@ std::vector<UsedJoint> used_joints(const Scene& scene, const mesh::Mesh& mesh) {
   return all;
 }
 
-/// The compressions, Pa, at which laws are asked how steep they are: those that strain the rock by 1e-5 to 1e-2, where
-/// it is uniform.
+/// Range of compressions, Pa, for the evaluation of slopes. They strain a uniform rock by 1e-5 to 1e-2.
 std::array<Real, 2> compressions(const Scene& scene) {
   const auto rock = bounding_rock(scene);
   const Real G = rock ? rock->G : 1e10;
   return {1e-5 * G, 1e-2 * G};
 }
 
-/// The slopes of bound and dilation at the compression where their product is largest, of a joint that has not slipped.
+/// Slopes of bound and dilation of a joint without slip, at the compression with the largest product.
 std::array<Real, 2> steepest(const laws::Joint& law, const std::array<Real, 2>& compressions) {
   std::array<Real, 2> slopes{};
-  const Real zero = 0;  // all that laws have kept
+  const Real zero = 0;  // all history variables
   constexpr int n = 40;
   for (int k = 0; k <= n; ++k) {
     const Real compression = compressions[0] * std::pow(compressions[1] / compressions[0], Real(k) / n);
@@ -80,8 +79,8 @@ std::array<Real, 2> steepest(const laws::Joint& law, const std::array<Real, 2>& 
 
 using PerPiece = std::vector<int>;
 
-/// [3 piece + component]: whether a displacement in this direction is given on faces, or sides that are apart in it are
-/// tied.
+/// [3 piece + component] whether faces have a prescribed displacement in this direction, or tied sides are at a
+/// distance in it. Collective.
 PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
   PerPiece held(3 * mesh.n_pieces, 0);
   for (const auto& [name, condition] : scene.boundary_conditions)
@@ -101,11 +100,12 @@ PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
   return base::max_over_ranks(*mesh.comm, held);
 }
 
-/// [single fracture]: whether rock resists its opening somewhere. It does not where the fracture cuts off a piece that
-/// touches no third one and may move along the normal: there loads alone give the normal traction. Collective.
+/// [single fracture] whether the rock resists its opening somewhere. It does not if the fracture separates a piece that
+/// touches no third piece and can move along the normal. The loads alone then determine the normal traction.
+/// Collective.
 std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) {
   const auto held = held_pieces(scene, mesh);
-  PerPiece first(mesh.n_pieces, mesh.n_pieces), last(mesh.n_pieces, -1);  // of a piece's neighbours
+  PerPiece first(mesh.n_pieces, mesh.n_pieces), last(mesh.n_pieces, -1);  // numbers of the neighbours of a piece
   const auto for_each_face = [&](const auto& use) {
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
       const auto& face = mesh.fracture_faces[f];
@@ -161,13 +161,13 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const auto rock = bounding_rock(scene);
   if (!rock) return "";
   const auto [least, most] = compressions(scene);
-  const Real compression = std::sqrt(least * most), zero = 0;  // at which laws are asked
+  const Real compression = std::sqrt(least * most), zero = 0;  // compression for the evaluation of laws
   std::string weakest;
-  Real lowest = most;  // compression from which on slip runs away
+  Real lowest = most;  // smallest compression of unstable slip
   for (const auto& [material, called] : used_joints(scene, mesh)) {
     if (!material.is_uniform()) continue;
     auto law = material.joint({}).law;
-    law.bond = laws::Bond();  // whose softening does not grow with the compression
+    law.bond = laws::Bond();  // softening of the bond does not grow with the compression
     const Real unloads = 1 / (size / rock->G + law.elastic.initial_compliance());
     for (Real slip = 1e-9; slip < 10; slip *= 1.5) {
       const Real fall = physics::weakening(law, {.lambda_n = -compression,
