@@ -13,8 +13,7 @@ class Truncation final : public FluxTruncation {
  public:
   using Flux = HybridFlux<shape>;
   using Of = Potentials::Of;
-  static constexpr int dim = Flux::dim, n = Flux::n, fewest = dim == 2 ? 4 : 8;  // least number of cells around a
-                                                                                 // corner for a fit
+  static constexpr int dim = Flux::dim, n = Flux::n, fewest = dim == 2 ? 4 : 8;  // cells per fit
 
   Truncation(RCP<const mesh::Mesh> mesh, const Potentials::Layouts& layouts, ConstView<char*> held_facets,
              HybridFluxParameters parameters)

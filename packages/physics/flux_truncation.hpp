@@ -16,8 +16,8 @@ class FluxTruncation {
   virtual void set_transmissivity(std::vector<Real> of_local_faces) = 0;
   /// Flows driven by the given potentials, [owned unknown]. Collective.
   virtual HybridFlows flows(const fields::Vector& cells, const fields::Vector& facets) const = 0;
-  /// Flows q_i driven by potential differences c_i. For flows q_v of potentials v, the form c . q_v equals q . (v_K -
-  /// v_i).
+  /// Flows q_i driven by potential differences c_i. For flows q_v of potentials v:
+  /// c . q_v = q . (v_K - v_i).
   virtual HybridFlows flows(const HybridFlows& differences) const = 0;
   /// Adds the excess transport by the fluid flows Q, with `capacity` per volume and unit.
   /// Upwinding uses T_K instead of the facet value T_i. The excess is -Q (T_i - T_K), with the gradient fitted to the

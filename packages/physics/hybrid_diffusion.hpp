@@ -33,10 +33,8 @@ struct HybridDiffusionParameters {
   std::optional<base::Expression> initial = {};  ///< u at the start; none: undefined
   std::vector<base::Expression> source = {};     ///< Q per volume and time; empty or one
   std::vector<FluxCondition> conditions = {};    ///< without those of fractures
-  bool in_regions = false;                       ///< u is prescribed in some cells; the linear solver does not
-                                                 ///< eliminate them
-  std::vector<std::string> coupled_by = {};      ///< fields coupled to cells, if present; the solver does not eliminate
-                                                 ///< the cells
+  bool in_regions = false;                       ///< u is prescribed in some cells; these are not eliminated
+  std::vector<std::string> coupled_by = {};      ///< fields whose presence prevents the elimination of cells
   std::vector<Real> exchange = {};  ///< [local fracture face] m/(Pa s), transfer coefficient between each side's cell
                                     ///< and the fracture; infinite: no resistance; empty: all infinite
 };

@@ -522,8 +522,7 @@ class Error final : public HybridError {
   /// Computes s at all places, see HybridError. Collective.
   std::vector<Real> common_potential(const Sums& sums) const {
     constexpr Real fixed = 1e15;                            // relative weight of prescribed values
-    std::vector<std::array<Real, 2>> of_rock(sums.size());  // contributions of rock to means in fractures: weight,
-                                                            // weighted value
+    std::vector<std::array<Real, 2>> of_rock(sums.size());  // rock's part of means: weight, weighted value
     const auto own = [&](int place) {
       const auto& sum = sums[place];
       if (sum[held] == 0) return std::array{sum[weight], sum[weighted] / sum[weight]};

@@ -33,7 +33,6 @@ struct HybridErrorParameters {
 /// - On the boundary the pressure at the centre of a face differs from its mean. The factor of the adjoint solution is
 ///   its flow there.
 /// - The source minus the storage rate varies in a cell. Its variation is multiplied by that of the adjoint potential.
-/// mean in a cell, and so is the answer's potential.
 class HybridError {
  public:
   virtual ~HybridError() = default;

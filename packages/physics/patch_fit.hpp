@@ -57,8 +57,7 @@ class PatchFit {
   }
 
  private:
-  static constexpr Real ridge = 1e-3;  // relative to the mean spread; suppresses gradients normal to coplanar or
-                                       // collinear centres
+  static constexpr Real ridge = 1e-3;  // relative to the mean spread: no gradient normal to coplanar centres
   using Sums = std::array<Real, 14>;   // sums of 1, x, the six x_i x_j, v, v x; x relative to the corner
 
   static void add(const Entity& entity, int k, Real value, Sums& sums) {

@@ -46,8 +46,7 @@ inline std::string implausible(const std::string& where, const std::string& what
 struct Prescribed {
   std::string field;
   std::vector<base::Expression> values;
-  std::vector<Real> lower_corner = {}, upper_corner = {};  ///< restricts the condition to nodes in this box; empty: all
-                                                           ///< nodes
+  std::vector<Real> lower_corner = {}, upper_corner = {};  ///< only nodes in this box; empty: all nodes
 };
 
 /// Quantity transported by the fluid of Flow. A fluid volume V at reference conditions carries `capacity` * u * V.
@@ -55,8 +54,7 @@ struct Carried {
   std::string field;  ///< u on cells; on facets the name has the prefix "face "
   Real capacity;
   std::string total, unit;                           ///< name and unit in results.json of the rate supplied by wells
-  std::map<std::string, base::Expression> in_wells;  ///< [well] u(t) of the injected fluid; default: u of the
-                                                     ///< surroundings
+  std::map<std::string, base::Expression> in_wells;  ///< [well] u(t) of the injected fluid; default: local u
   std::optional<FluidChange> change = {};            ///< effect on the fluid; at most one physics has one
   /// Second-order transport (see Antidiffusion): storage capacity, per unit of u, of local cells (per
   /// volume) and of the filling of local fracture faces.
@@ -77,11 +75,8 @@ struct Physics {
   struct Part {
     void describe(base::Section&) {}
     void check(base::Section&) const {}
-    bool is_given() const {
-      return false;
-    }  ///< for regions and boundary conditions: some entry of this physics is
-       ///< given
-    std::vector<Prescribed> prescribed() const { return {}; }  ///< for the same: fields with prescribed unknowns
+    bool is_given() const { return false; }                    ///< regions, boundary conditions: an entry is given
+    std::vector<Prescribed> prescribed() const { return {}; }  ///< the same: fields with prescribed unknowns
   };
   using Rock = Part<0>;
   using Joint = Part<1>;

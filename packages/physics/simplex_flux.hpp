@@ -12,7 +12,6 @@ namespace sprekk::physics {
 /// Flux in a simplex of d dimensions. Quadratic functions have their values at places: the corners, then the midpoints
 /// of edges (0, 1), (0, 2), ..., (1, 2), ...
 ///
-///
 /// | symbol   | shape          | unit       |                                                              |
 /// | X        | [corner, d]    | m          | corners, relative to the centre                              |
 /// | gradient | [corner, d]    | 1/m        | of barycentric coordinates                                   |

@@ -10,6 +10,7 @@ namespace sprekk::physics {
 /// Pressure p (or an equivalent unknown) and the volume V that displacements u change. Its derivative has the shape
 /// [entity, m], where m is the number of displacement unknowns of an entity.
 ///
+/// | symbol    | shape       | unit          |                          |
 /// | loop      |             |               | its entities             |
 /// | u         |             | m             | block of displacements   |
 /// | p         |             | Pa            | block of the pressure    |

@@ -20,8 +20,7 @@ struct WellTemperature {
 
 struct HeatSection {
   base::Expression source = 0;
-  std::optional<base::Expression> initial_temperature;  ///< required with heat storage, and with thermal expansion of
-                                                        ///< rock
+  std::optional<base::Expression> initial_temperature;  ///< required with heat storage or thermal expansion
   std::optional<Real> fluid_capacity;                   ///< per volume, required with Flow
   Real fluid_expansion = 0;                             ///< volumetric
   std::string fluid = "constant";                       ///< dependence of the fluid of Flow on T

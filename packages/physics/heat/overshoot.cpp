@@ -115,8 +115,7 @@ std::string overshoot_warning(const Setting& setting, const std::vector<Real>& t
   auto beyond = overshoot(mesh, other, given_range(given, mesh, {times.back()}), found);
   if (beyond.counts()) beyond = overshoot(mesh, other, given_range(given, mesh, some_of(times)), found);
   if (!beyond.counts()) return "";
-  const Real size = std::pow(10, std::floor(std::log10(beyond.size)));  // rounded, so that few different messages are
-                                                                        // printed
+  const Real size = std::pow(10, std::floor(std::log10(beyond.size)));  // few different messages
   return fmt::format(
       "{}: temperatures are more than {:.3g} K beyond the given ones, {:.6g} to {:.6g} K, by the error of the mesh "
       "or of the steps: take finer cells, or \"implicit Euler\" where steps are long",

@@ -147,8 +147,7 @@ struct Expansion {
   Real rate = 0;
 
   KOKKOS_INLINE_FUNCTION void residual(int c, const Real (&x)[1], Real (&r)[1]) const {
-    r[0] = c < static_cast<int>(kept.extent(0)) ? -room(c) * rate * (x[0] - kept(c, 0)) : 0;  // else cell of another
-                                                                                              // rank
+    r[0] = c < static_cast<int>(kept.extent(0)) ? -room(c) * rate * (x[0] - kept(c, 0)) : 0;  // else a ghost
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int c, const Real (&)[1], Real (&J)[1][1]) const { J[0][0] = -room(c) * rate; }
 };

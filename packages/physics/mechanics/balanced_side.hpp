@@ -9,7 +9,6 @@ namespace sprekk::physics {
 /// Balance of one side of a fracture face; all coefficients are constant. u: nodal displacements, or the tip
 /// displacements with psi_a instead of N_a.
 ///
-///
 /// | symbol    | shape            | unit |                                                            |
 /// | x         | u [node, dim], beta [dim], lambda [dim] | m, m, Pa | unknowns                       |
 /// | r         | displacement rows [node, dim], side bubble rows [dim] | N | forces                    |

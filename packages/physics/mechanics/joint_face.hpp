@@ -121,7 +121,6 @@ struct JointFace {
 /// Power dissipated by plastic slip of a face, a source of a row of stored energy: r = -A/dt work, see
 /// JointPoints::work().
 ///
-///
 /// | symbol | shape           | unit |                    |
 /// | x      | as in JointFace |      |                    |
 /// | r      | 1               | W    | (2D: W/m)          |

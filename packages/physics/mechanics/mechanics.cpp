@@ -147,8 +147,7 @@ std::vector<base::Expression> lithostatic_stress(const Scene& scene) {
   const auto& [surface, horizontal_ratio] = *scene.bulk.lithostatic_stress;
   const auto& gravity = scene.bulk.gravity;
   const int dim = static_cast<int>(gravity.size()), up = dim - 1;
-  const Real weight = -(*scene.material_of("bulk").density)({0, 0, 0}, 0) * gravity[up];  // positive: gravity points
-                                                                                          // down
+  const Real weight = -(*scene.material_of("bulk").density)({0, 0, 0}, 0) * gravity[up];  // positive
   std::vector<base::Expression> stress(dim == 2 ? 4 : 6, base::Expression(0));
   for (int i = 0; i < 3; ++i) {
     const Real factor = weight * (i == up ? 1 : horizontal_ratio);

@@ -194,8 +194,8 @@ class Recovery final : public StressRecovery {
   }
 
   /// Computes |s* - s_h|^2, |s*|^2 and the volume of a cell. With d = s* - s_h - s_b, adds the moments of C^-1 d with
-  /// the functions of the patches, and the forces - integral d : eps(v). The forces on bubbles are - integral (s* -
-  /// s_h) : eps(v) + alpha beta.
+  /// the functions of the patches, and the forces - integral d : eps(v). The forces on bubbles are
+  ///   - integral (s* - s_h) : eps(v) + alpha beta.
   void add_cell(LocalIndex c, const Displacement& u, const Fits& fit, Fits& moments, const Forces& to,
                 Real (&square)[3]) const {
     const auto& bubbles = bubbles_of(c);

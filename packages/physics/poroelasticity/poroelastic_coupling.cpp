@@ -164,8 +164,7 @@ class PoroelasticCoupling final : public assembly::Module {
   bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
   std::array<int, 2> pressures_{};  // blocks of pressure, face pressure
-  ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: fixed-stress Schur complement of
-                                    // V_K
+  ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: Schur complement (fixed stress)
   std::vector<assembly::Term> rates_, openings_;  // rates_ are proportional to the rate of the state
   assembly::Term stabilisation_;                  // contained in rates_
 };
