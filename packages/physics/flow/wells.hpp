@@ -39,14 +39,14 @@ struct WellsParameters {
 /// well, and to the rows of "face pressure" of fracture faces that a well crosses (2D: lies on). For a compressible
 /// fluid the term is -W (e_w - e)/c.
 ///
-/// | W | connection |
-/// | 2 pi k_w L/(ln(r_0/r_w) + skin) | cell |
-/// | 2 pi T/(ln(r_0/r_w) + skin) | fracture face, 3D |
-/// | 2 T/((1 + skin) r_w) | fracture face, 2D (flow along a line) |
+/// | connection        | W                               |
+/// | cell              | 2 pi k_w L/(ln(r_0/r_w) + skin) |
+/// | fracture face, 3D | 2 pi T/(ln(r_0/r_w) + skin)     |
+/// | fracture face, 2D | 2 T/((1 + skin) r_w)            |
 ///
-/// L is the length of the well in the cell, k_w = LineFlow::conductance, r_0 the equivalent radius of
-/// log_equivalent_radius(), and T the present transmissivity, or that of State::coefficients. p_w is the pressure at
-/// the first point plus the hydrostatic pressure difference to the centre of the cell.
+/// L is the length of the well in the cell, and k_w = LineFlow::conductance. r_0 is the equivalent radius, see
+/// log_equivalent_radius(). T is the present transmissivity, or that of State::coefficients. The pressure p_w is that
+/// at the first point plus the hydrostatic pressure difference to the centre of the cell.
 ///
 /// * A rate is distributed in proportion to W at the start of the step, which corresponds to a uniform drawdown.
 /// * A transported field that changes the fluid multiplies W by d m of the cell or face, see laws::FluidResponse. The
@@ -54,8 +54,8 @@ struct WellsParameters {
 /// * Wells are shifted by 1e-9 of the domain size in a direction that no face has. Lengths are then independent of the
 ///   partition, and a well in a face between cells counts once.
 ///
-/// Throws an Error on every rank if a well leaves the domain, lies in the plane of a fracture (3D), or has a radius
-/// that is not below the equivalent radius.
+/// Throws an Error on every rank if a well leaves the domain, lies in the plane of a fracture (3D), or has a radius of
+/// r_0 exp(skin) or more.
 ///
 /// Totals: "wells", the name, then "rate", "pressure" (for wells with a rate the mean weighted by W), and the rates "in
 /// rock" and "in FRACTURE". For each transported quantity: the field name, with the weighted mean of u in the injected

@@ -119,7 +119,8 @@ class BulkMomentum final : public assembly::Module {
     if (parameters_.keeps_stress) add_constitutive(-1, state, state.history[0], state.history[1]);
   }
 
-  /// Stress scale: largest traction, and largest body force at nodes times the size of the domain.
+  /// Stress scale: largest of traction, initial stress at cell centres, and body force times the size of the domain.
+  /// The body force is evaluated at the first node of each cell.
   assembly::Scales loads(Real t) const override {
     Real largest = 0;
     for (const auto& traction : parameters_.tractions)
