@@ -124,7 +124,7 @@ struct Physics {
   static std::vector<std::string> fixed_entries() { return {}; }
   /// Further reasons why a live model cannot adopt a changed scene, beyond fixed_entries(), one per line.
   static std::vector<std::string> refuses_change(const Scene& before, const Scene& after) { return {}; }
-  /// Does the same check on the mesh of the changed scene. Collective.
+  /// Further reasons that depend on the mesh of the changed scene. Collective.
   static std::vector<std::string> refuses_change_in(const mesh::Mesh&, const Scene& before, const Scene& after) {
     return {};
   }
