@@ -1,4 +1,4 @@
-// Distributed vectors and matrices gathered on every rank, and dense algebra to compare with.
+// Gathering of distributed vectors and matrices on every rank, and dense algebra for comparisons.
 #pragma once
 
 #include <Teuchos_CommHelpers.hpp>
@@ -12,7 +12,7 @@
 
 namespace sprekk::test {
 
-/// n_rows x n_columns numbers by rows.
+/// Dense n_rows x n_columns matrix, stored by rows.
 struct Dense {
   int n_rows = 0, n_columns = 0;
   std::vector<Real> values;
@@ -48,9 +48,9 @@ inline Real largest(const Dense& a) {
   return size;
 }
 
-/// A^-1 B.
+/// Returns A^-1 B.
 inline Dense solve(const Dense& A, const Dense& B) {
-  Dense a = transpose(A), b = transpose(B);  // LAPACK counts by columns
+  Dense a = transpose(A), b = transpose(B);  // LAPACK stores by columns
   std::vector<int> pivots(A.n_rows);
   int info = 0;
   Teuchos::LAPACK<int, Real>().GESV(A.n_rows, B.n_columns, a.values.data(), std::max(1, A.n_rows), pivots.data(),
@@ -59,7 +59,7 @@ inline Dense solve(const Dense& A, const Dense& B) {
   return transpose(b);
 }
 
-/// Eigenvalues of a symmetric matrix, ascending.
+/// Returns the eigenvalues of a symmetric matrix, ascending.
 inline std::vector<Real> eigenvalues(Dense a) {
   const int n = a.n_rows;
   std::vector<Real> values(n), work(8 * n + 1);
@@ -92,7 +92,7 @@ inline Dense gather(const fields::CrsMatrix& matrix) {
   return all;
 }
 
-/// A number in [-1, 1] that depends on k and seed alone, so that every partition sees the same.
+/// Returns a number in [-1, 1] that depends on k and seed only, hence not on the partition.
 inline Real pseudo_random(GlobalIndex k, int seed) {
   std::size_t h = std::size_t(k) * 2654435761u + std::size_t(seed) * 40503u + 12345;
   for (int round = 0; round < 2; ++round) {

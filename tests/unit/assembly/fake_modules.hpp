@@ -1,4 +1,4 @@
-// Modules for tests of the framework: springs in every cell, a glue between fracture sides, a hardening of the nodes.
+// Modules for tests of the framework: springs in cells, glue between fracture sides, hardening at nodes.
 #pragma once
 
 #include <memory>
@@ -38,8 +38,8 @@ struct SpringCell {
   }
 };
 
-/// Linear; declares "displacement", with the scales of E = 100 Pa and L = 2 m. Every node is pulled by the force
-/// `force` * t^power in direction x.
+/// Linear module. Declares "displacement" with the scales E = 100 Pa and L = 2 m. The load on every node is `force` *
+/// t^power in direction x.
 template <Shape shape>
 class Springs final : public assembly::Module {
  public:
@@ -87,7 +87,7 @@ class Springs final : public assembly::Module {
   std::unique_ptr<assembly::Assembler<SpringCell<shape>>> cells_;
 };
 
-/// r = q - (j + j^3 + q_old), j the sum of the jumps at the face's nodes.
+/// Residual r = q - (j + j^3 + q_old), with the sum j of the jumps at the nodes of the face.
 template <Shape shape>
 struct GlueFace {
   static constexpr int dim = mesh::dimension(shape), n = mesh::n_face_nodes(shape);
@@ -120,13 +120,13 @@ struct GlueFace {
   }
 };
 
-/// Not linear; declares "glue" on fracture faces, reads "displacement". History: the last committed glue.
+/// Nonlinear module. Declares "glue" on fracture faces and reads "displacement". History: the last committed glue.
 template <Shape shape>
 class Glue final : public assembly::Module {
  public:
   static constexpr int dim = mesh::dimension(shape);
   Real wrong = 0;                 ///< error of the derivative in the displacement
-  bool reads_undeclared = false;  ///< the residual reads the displacement once more than the declaration says
+  bool reads_undeclared = false;  ///< the residual reads the displacement once more than declared
 
   std::string name() const override { return "glue"; }
   Declaration declare(const mesh::Mesh&) const override {
@@ -184,7 +184,7 @@ struct HardeningCell {
   }
 };
 
-/// Not linear; adds to the rows of "displacement".
+/// Nonlinear module that adds to the rows of "displacement".
 template <Shape shape>
 class Hardening final : public assembly::Module {
  public:
@@ -211,7 +211,7 @@ class Hardening final : public assembly::Module {
   std::unique_ptr<assembly::Assembler<HardeningCell<shape>>> cells_;
 };
 
-/// A constant condition on "displacement"; components without value are free.
+/// Returns a constant condition on "displacement"; components without a value are free.
 inline assembly::DirichletCondition hold(const mesh::Mesh& mesh, const std::string& name, const std::string& boundary,
                                          std::vector<std::optional<base::Expression>> values) {
   const auto& names = mesh.boundary_names;

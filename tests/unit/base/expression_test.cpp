@@ -41,7 +41,7 @@ TEST(Expression, knows_the_error_function) {
   EXPECT_TRUE(compiled("erf(1)").is_constant());
 }
 
-/// An expression that may call others.
+/// Returns a compiled expression that may call the named expressions `others`.
 Expression calling(const std::string& text, const Expression::Named& others) {
   std::vector<std::string> errors;
   const auto named = Expression::compile_all(others, std::make_shared<Tables>(), errors);

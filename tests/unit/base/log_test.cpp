@@ -20,7 +20,7 @@ std::string content(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What another run adds to the file: a line before it is open, a warning and an error after.
+/// Writes a line before the file is open, then a warning and an error.
 void add_lines(const std::string& path, bool append) {
   const auto comm = Tpetra::getDefaultComm();
   std::ostringstream out, warnings;
@@ -37,7 +37,8 @@ void add_lines(const std::string& path, bool append) {
 TEST(Log, writes_streams_and_a_file_on_rank_0) {
   const auto comm = Tpetra::getDefaultComm();
   const std::string lines = "step 1\nwarning: odd\nerror: broken\n";
-  const auto path = fmt::format("log_test_{}.txt", comm->getSize());  // tests on other ranks run at the same time
+  const auto path = fmt::format("log_test_{}.txt", comm->getSize());  // tests with other numbers of ranks run at the
+                                                                      // same time
   add_lines(path, false);
   add_lines(path, false);
   if (comm->getRank() == 0) EXPECT_EQ(content(path), lines);
@@ -75,7 +76,7 @@ TEST(Timers, add_up_phases_in_the_order_of_their_first_use) {
   EXPECT_GE(inner.seconds, 0.015);
   EXPECT_GE(outer.seconds, inner.seconds);
   EXPECT_GE(last.seconds, 0);
-  EXPECT_LT(outer.cpu_seconds, 0.5 * outer.seconds);  // asleep
+  EXPECT_LT(outer.cpu_seconds, 0.5 * outer.seconds);  // the thread sleeps
 }
 
 TEST(Timers, count_what_the_process_works) {

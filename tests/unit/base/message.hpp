@@ -1,4 +1,4 @@
-// The message of the Error that a call throws.
+// Message of the Error that a call throws.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace sprekk::base {
 
-/// The text of the Error that `call` throws; a failure if it throws none, or something else.
+/// Returns the message of the Error that `call` throws. The test fails if `call` throws no Error.
 template <class Call>
 std::string message_of(const Call& call) {
   try {

@@ -107,7 +107,7 @@ std::string errors_of(const ParameterList& list) {
   return message_of([&] { read<Scene>(list, "xml/slip.xml", "Sprekk"); });
 }
 
-/// The errors after setting one entry of the section at `path` in a scene that is good.
+/// Returns the errors of a valid scene after setting one entry of the section at `path`.
 template <class T>
 std::string errors_with(const std::vector<std::string>& path, const std::string& name, const T& value) {
   ParameterList list = complete_scene();

@@ -60,7 +60,7 @@ TEST(Text, long_ones_are_shortened_between_characters) {
   EXPECT_EQ(shortened(std::string(200, 'a')), std::string(200, 'a'));
   EXPECT_EQ(shortened(std::string(1000, 'a')), std::string(60, 'a') + "... (1000 bytes)");
   std::string text;
-  for (int i = 0; i < 100; ++i) text += "\u20ac";  // of three bytes
+  for (int i = 0; i < 100; ++i) text += "\u20ac";  // three bytes
   EXPECT_EQ(shortened("." + text), "." + text.substr(0, 57) + "... (301 bytes)");
 }
 

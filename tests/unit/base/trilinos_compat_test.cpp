@@ -9,7 +9,7 @@
 namespace sprekk {
 namespace {
 
-/// As maps and matrices of Trilinos 16 are, whose like no test here can link.
+/// Interface of maps and matrices in Trilinos 16, which the tests cannot link.
 struct Later {
   std::size_t getLocalNumElements() const { return 3; }
   std::vector<int> getLocalElementList() const { return {7, 8, 9}; }
@@ -18,7 +18,7 @@ struct Later {
   std::size_t getLocalNumEntries() const { return 6; }
 };
 
-/// Of versions between, which have both: the old ones are deprecated.
+/// Interface of intermediate versions: both names exist, the old ones are deprecated.
 struct Both : Later {
   [[deprecated]] std::size_t getNodeNumElements() const { return 0; }
 };

@@ -75,7 +75,8 @@ TEST(Units, spellings_that_people_type) {
   EXPECT_EQ(value_of("1 t", "kg"), 1000);
 }
 
-/// A scale with a zero of its own: its degrees are those of K, so that it only stands for a level.
+/// Degrees Celsius have an offset and the size of a kelvin, hence are allowed only for temperatures, without other
+/// units.
 TEST(Units, degrees_of_celsius) {
   EXPECT_EQ(value_of("77 \u00b0C", "K"), 350.15);
   EXPECT_EQ(value_of("-10 degC", "K"), 263.15);

@@ -282,7 +282,7 @@ TEST(Override, keeps_the_type_of_the_entry) {
             4.0);
 }
 
-/// A text with a unit, which stands for a number, gives way to a number, and stays a text for another one.
+/// A number replaces a text with a unit ("5 s"); a text that is not a number stays a text.
 TEST(Override, puts_a_number_in_place_of_a_text_with_a_unit) {
   EXPECT_EQ(overridden("Time.start=7").sublist("Time").get<int>("start"), 7);
   EXPECT_EQ(overridden("Time.start=7.5").sublist("Time").get<double>("start"), 7.5);

@@ -1,4 +1,4 @@
-// A directory of its own for one test.
+// Temporary directory for one test.
 #pragma once
 
 #include "base/types.hpp"
@@ -14,7 +14,8 @@
 
 namespace sprekk::test {
 
-/// Made by rank 0 and removed at the end; the same path on every rank. Construction and destruction are collective.
+/// Directory created by rank 0 and removed by the destructor; its path is equal on all ranks. Construction and
+/// destruction are collective.
 class Scratch {
  public:
   explicit Scratch(const Comm& comm) : comm_(comm) {
@@ -33,7 +34,7 @@ class Scratch {
 
   std::string operator/(const std::string& name) const { return path_ / name; }
 
-  /// Runs `work` on rank 0 alone, the others wait. Collective.
+  /// Runs `work` on rank 0 while the other ranks wait. Collective.
   template <class Work>
   void on_rank_0(Work work) const {
     if (comm_.getRank() == 0) work();
@@ -50,7 +51,7 @@ inline std::string content(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The text of the Error that `work` throws; a failed test without one.
+/// Returns the message of the Error that `work` throws; the test fails if there is none.
 template <class ErrorType, class Work>
 std::string error_of(Work work) {
   try {

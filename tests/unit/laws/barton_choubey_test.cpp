@@ -1,4 +1,4 @@
-// The peak strength of a rough joint: angles known by hand, published and independently computed values, a shear test.
+// Peak strength of a rough joint: angles by hand, published and independently computed values, a shear test.
 #include "laws/joint.hpp"
 
 #include <Sacado.hpp>
@@ -24,14 +24,14 @@ TEST(BartonChoubey, BoundAtAnglesKnownByHand) {
   EXPECT_LT(bound(law, -1), 0);
 }
 
-/// Barton and Choubey (1977): a joint that slides at 59 degrees under 1 kPa has JRC = (59 - 29)/log10(100/0.001) = 6;
-/// the mean of 136 joints, JRC 8.9, JCS 92 MPa, phi_r 27.5 degrees.
+/// Barton and Choubey (1977): a joint that slides at 59 degrees under 1 kPa has JRC = (59 - 29)/log10(100/0.001) = 6.
+/// The mean of 136 joints is JRC 8.9, JCS 92 MPa, phi_r 27.5 degrees.
 TEST(BartonChoubey, PublishedJoints) {
   EXPECT_NEAR(bound({6, 100e6, 29, 70}, 1e3), 1e3 * tangent_of(59), 1e-9);
-  EXPECT_NEAR(bound({8.9, 92e6, 27.5, 70}, 1e6), 1e6 * tangent_of(44.9777), 5);  // four decimals of a degree
+  EXPECT_NEAR(bound({8.9, 92e6, 27.5, 70}, 1e6), 1e6 * tangent_of(44.9777), 5);  // angle rounded to four decimals
 }
 
-/// Computed apart from this code, with ten digits; the later ones of larger blocks, whose JRC and JCS are smaller.
+/// Independently computed values, with ten digits. The last values are for larger blocks with smaller JRC and JCS.
 TEST(BartonChoubey, StrengthUnderOneMegapascal) {
   EXPECT_NEAR(bound({10, 100e6, 30, 70}, 1e6), 1.1917535926e6, 1e-3);
   EXPECT_NEAR(bound({6.309573445, 50.118723363e6, 30, 70}, 1e6), .860933867e6, 1e-2);
@@ -39,8 +39,8 @@ TEST(BartonChoubey, StrengthUnderOneMegapascal) {
   EXPECT_NEAR(bound({3.705672246, 31.901823284e6, 30, 70}, 1e6), .715207846e6, 1e-2);
 }
 
-/// Shears a joint of tangential stiffness K_t to the jump s at the compression N and solves for the traction by
-/// Newton's method on the law's residual, differentiated in lambda alone.
+/// Shear test of a joint with tangential stiffness K_t at the jump s and the compression N. Newton's method solves the
+/// residual of the law for the traction; Sacado differentiates it in lambda only.
 struct ShearTest {
   Joint law;
   ContactState state = ContactState::open;
@@ -51,7 +51,7 @@ struct ShearTest {
     const Real p_old[1] = {0};
     Contact<Real> at;
     at.lambda_n = -N;
-    const Fad w[2] = {law.normal_gap(at), s};  // the faces just touch at this traction
+    const Fad w[2] = {law.normal_gap(at), s};  // the sides just touch at this traction
     std::array<Real, 2> lambda = {-N, 0};
     for (int iteration = 0; iteration < 20; ++iteration) {
       const Fad x[2] = {Fad(2, 0, lambda[0]), Fad(2, 1, lambda[1])};

@@ -1,4 +1,4 @@
-// The history of slip by directions against the sum over all steps.
+// Directional table of the slip history, compared with the sum over all steps.
 #include "laws/damage/exponential.hpp"
 
 #include <Sacado.hpp>
@@ -15,11 +15,11 @@ namespace {
 constexpr Real pi = 3.14159265358979323846;
 using Vector = std::array<Real, 2>;
 struct Path {
-  std::vector<Vector> u;  // from (0, 0)
-  std::vector<Real> k;    // of the segment that ends there
+  std::vector<Vector> u;  // end points; the path starts at (0, 0)
+  std::vector<Real> k;    // weight of the segment that ends there
 };
 
-/// The sum over all segments.
+/// Returns the sum over all segments.
 Real exact(const Path& path, Real t) {
   const Real m[] = {std::cos(t), std::sin(t)};
   Real sum = 0, before = 0;
@@ -53,14 +53,15 @@ Real kept_value(const Kept& kept, Real t) {
   return form.constant + form.gradient[0] * m[0] + form.gradient[1] * m[1];
 }
 
-/// The interval that the sector of t keeps of exact minus kept values.
+/// Returns the interval of (exact value - stored value) of the sector that contains t.
 std::array<Real, 2> interval(const Kept& kept, Real t) {
   int j = 0;
   while (j + 1 < kept[0] && kept[1 + 5 * (j + 1)] <= t) ++j;
   return {kept[1 + 5 * j + 3], kept[1 + 5 * j + 4]};
 }
 
-/// The exact value lies in the interval at many directions; returns the largest error over the largest value.
+/// Checks in many directions that the interval contains the error. Returns the largest error divided by the largest
+/// value.
 Real expect_enclosed(const Path& path, const Kept& kept) {
   const DirectionFan fan({kept.data(), 1});
   Real worst = 0, largest = 0;
@@ -109,7 +110,7 @@ Path cycles(int n, std::vector<Real> directions) {
   return path;
 }
 
-/// Lambda on the side of u after each step of short paths, m: known values, not from this program.
+/// Known values, independent of this program: Lambda in direction u after each step of short paths.
 TEST(DirectionFan, KnownValues) {
   const auto expect = [](const Path& path, const std::vector<Real>& values) {
     Kept kept(DirectionFan::n_numbers, 0);
@@ -128,7 +129,7 @@ TEST(DirectionFan, KnownValues) {
          {2.2360679775e-4, 2.2360679775e-4, 2.2360679775e-4, 1.414213562373e-4});
 }
 
-/// Few directions of motion and no bound on the number of steps: nothing is given up.
+/// With few directions of motion the table is exact, for any number of steps.
 TEST(DirectionFan, ExactForFewDirections) {
   for (const auto& directions : {std::vector<Real>{0.3}, {0, 0.4, 1.1, 2, 2.9}}) {
     const auto path = cycles(10000, directions);
@@ -139,7 +140,7 @@ TEST(DirectionFan, ExactForFewDirections) {
   }
 }
 
-/// Paths with more directions than there is room for; the errors are below those known of the method.
+/// Paths with more directions than the table can store: the errors are below known bounds of the method.
 TEST(DirectionFan, EnclosesTheExactHistory) {
   const std::pair<Path, Real> paths[] = {{circle(1000, {1, 0}, false), 1e-5}, {circle(300, {1, 0}, true), 5e-4},
                                          {circle(1000, {0, 0}, true), 1e-3},  {random_walk(1000, 1), 1e-2},
@@ -152,8 +153,8 @@ TEST(DirectionFan, EnclosesTheExactHistory) {
   }
 }
 
-/// In the direction that a step has ended in the value is that before the step and its term, not changed by what is
-/// given up: a state that was found with it obeys the law with what is kept.
+/// In the direction of the present slip, the value is the previous value plus the term of the step; compression of the
+/// table does not change it. The stored history is then consistent with the converged state.
 TEST(DirectionFan, KeepsTheValueInThePresentDirection) {
   const auto path = random_walk(300, 11);
   Kept kept(DirectionFan::n_numbers, 0);
@@ -168,7 +169,7 @@ TEST(DirectionFan, KeepsTheValueInThePresentDirection) {
   EXPECT_GT(DirectionFan({kept.data(), 1}).error(), 0);
 }
 
-/// What the numbers of a path's middle tell is all that counts: the second half from there gives the same bits.
+/// The stored numbers suffice to continue a path: the second half, started from them, gives bitwise equal values.
 TEST(DirectionFan, GoesOnFromWhatItHasKept) {
   const auto path = random_walk(400, 7);
   Kept first(DirectionFan::n_numbers, 0);
@@ -178,7 +179,8 @@ TEST(DirectionFan, GoesOnFromWhatItHasKept) {
   EXPECT_EQ(later, along(path));
 }
 
-/// Of what is left, in the plastic jump: near 0, where sides pass into each other, on the way back, on and across.
+/// Derivatives of the remaining friction and dilation with respect to the plastic jump: near 0, near sector
+/// boundaries, against, along and across the last slip.
 TEST(AnisotropicDamage, HasItsDerivativesInSpace) {
   using Fad = Sacado::Fad::SFad<Real, 2>;
   const AnisotropicDamage law{{0.3, 0.1, 0.02, 0.05}};
@@ -227,10 +229,10 @@ TEST(AnisotropicDamage, HasItsDerivativesInSpace) {
         steepest = std::max(steepest, size * std::abs(value.dx(0)));
       }
     }
-  EXPECT_GT(steepest, 0.1);  // so that the tolerance means something
+  EXPECT_GT(steepest, 0.1);  // the tolerance is significant
 }
 
-/// The mean over all directions is the path's length over pi.
+/// The mean over all directions is the length of the path divided by pi.
 TEST(DirectionFan, MeanOfAllDirections) {
   const auto path = random_walk(50, 5);
   Real length = 0, mean = 0;

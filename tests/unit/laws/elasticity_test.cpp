@@ -15,7 +15,7 @@ Constants constants(Real E, Real nu) {
   return {E, nu, E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu)), E / (3 * (1 - 2 * nu))};
 }
 
-/// The pair of constants with numbers i and j of E, nu, G, lambda, K.
+/// Returns the pair of constants with the indices i and j in (E, nu, G, lambda, K).
 ElasticPair pair_of(const Constants& all, int i, int j) {
   ElasticPair pair;
   const auto give = [&](int k) {
@@ -70,7 +70,7 @@ TEST(LameConstants, RefuseSolidsThatAreNotStable) {
   EXPECT_TRUE(refused({0, 0, 3, -2, 0}, 2, 3));  // K = 0
   EXPECT_TRUE(refused({0, 0, -1, 3, 0}, 2, 3));
   EXPECT_TRUE(refused({0, 0, 0, 2, 1}, 3, 4));  // G < 0
-  EXPECT_TRUE(refused({0, 0, 0, 0, 0}, 1, 3));  // nu = 0 says nothing of G
+  EXPECT_TRUE(refused({0, 0, 0, 0, 0}, 1, 3));  // nu = 0 does not determine G
 }
 
 template <int dim>
@@ -86,7 +86,7 @@ void expect_consistent() {
   law.stiffness(M, K);
   for (int j = 0; j < dim; ++j) {
     Real H[dim][dim] = {}, sigma[dim][dim];
-    for (int k = 0; k < dim; ++k) H[j][k] = b[k];  // displacement e_j times a function with gradient b
+    for (int k = 0; k < dim; ++k) H[j][k] = b[k];  // gradient of e_j times a function with gradient b
     law.stress(H, sigma);
     for (int i = 0; i < dim; ++i) {
       Real product = 0;

@@ -11,7 +11,7 @@ TEST(Fluid, DropsAreDifferencesOfDensities) {
   EXPECT_NEAR(fluid.drop(5, 1, 0), (std::exp(0.9) - std::exp(-0.3)) / 0.3, 1e-15 * 10);
 }
 
-/// Little compressible: as good as none, without loss of digits.
+/// The limit of vanishing compressibility has no cancellation.
 TEST(Fluid, NothingCancels) {
   const Fluid none{}, little{1e-30, 0};
   for (const Real lift : {0.0, 3.0}) {
@@ -28,7 +28,7 @@ TEST(Fluid, SlopesAreThoseOfDrops) {
   EXPECT_NEAR(fluid.ddrop_db(a, b, lift), (fluid.drop(a, b + h, lift) - fluid.drop(a, b - h, lift)) / (2 * h), 1e-9);
 }
 
-/// Where 1/e is linear along the weight, nothing is driven.
+/// A column at rest, where 1/e is linear in the height, has no driving potential difference.
 TEST(Fluid, IsAtRestInAColumn) {
   const Fluid fluid{0.3, 2};
   const auto at = [&](Real height) { return 2 - std::log(1 + 0.3 * 5 * height) / 0.3; };  // rho_0 g = 5, downwards

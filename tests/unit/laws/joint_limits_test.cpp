@@ -1,4 +1,4 @@
-// Limits of the joint law, its derivatives, and what must not matter.
+// Limits of the joint law, its derivatives, and independence of the augmentation.
 #include <vector>
 
 #include "laws/joint.hpp"
@@ -50,7 +50,7 @@ TEST(JointLimits, NoClosure) {
   expect_closed_form(law);
 }
 
-/// Without friction the joint slips and dilates: all of d_t is plastic.
+/// Without friction the joint slips and dilates; the jump d_t is fully plastic.
 TEST(JointLimits, NoFriction) {
   SimpleJoint law = reference_joint();
   law.friction.coefficient = 0;
@@ -62,7 +62,7 @@ TEST(JointLimits, NoFriction) {
   EXPECT_NEAR(block.lambda[1], 0, 1e-14);
 }
 
-/// A joint of vanishing stiffness sticks elastically instead: no plastic jump, no dilation.
+/// With vanishing stiffness the joint sticks elastically, without plastic jump and dilation.
 TEST(JointLimits, NoTangentialStiffness) {
   SimpleJoint law = reference_joint();
   law.elastic.inverse_stiffness = 1e14;
@@ -92,7 +92,8 @@ TEST(JointLaw, TouchingUnloadedFaceSticks) {
     }
 }
 
-/// Beyond the limit by rounding a face that has not moved sticks; beyond it by more, or moved, it slips.
+/// At rest, a face beyond the friction bound by round-off sticks. A face further beyond the bound, or with a jump,
+/// slips.
 TEST(JointLaw, OnTheLimitAtRestSticks) {
   SimpleJoint law;
   law.friction.coefficient = 0.6;
@@ -139,7 +140,7 @@ TEST(JointLaw, AugmentationIsInSeriesWithTheJoint) {
   EXPECT_DOUBLE_EQ(augmentation(law, 4.0).tangential, 4);
 }
 
-/// A face without traction that has moved, and dilates: it slides, however soft the joint is, where mu tan(theta) < 1.
+/// A face with a jump and dilation but without traction slides for any joint stiffness, if mu tan(theta) < 1.
 TEST(JointLaw, AFaceThatOverlapsByItsDilationSlides) {
   for (const Real compliance : {1e-3, 1.0, 1e3, 1e6})
     for (const Real mu : {0.1, 0.9}) {
@@ -156,7 +157,7 @@ TEST(JointLaw, AFaceThatOverlapsByItsDilationSlides) {
     }
 }
 
-/// At a point that is no solution: the bound comes from the projected normal traction y, not from lambda_n.
+/// Away from solutions, the bound follows from the projected normal traction y, not from lambda_n.
 TEST(JointLaw, ResidualIsThatOfTheProjections) {
   const SimpleJoint law = reference_joint();
   const auto c = augmentation(law, 1.5);
@@ -171,7 +172,7 @@ TEST(JointLaw, ResidualIsThatOfTheProjections) {
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(R[i + 1], lambda[i + 1] + 0.6 * y * z[i] / std::hypot(z[0], z[1]), 1e-14);
 }
 
-/// Derivatives of contact_residual by Sacado against central differences.
+/// Compares the derivatives of contact_residual by Sacado with central differences.
 template <int dim>
 void expect_exact_derivative(const SimpleJoint& law, const Real (&w)[dim], const Real (&lambda)[dim],
                              const Real (&old)[dim - 1], ContactState expected) {
@@ -224,7 +225,7 @@ TEST(Norm, HasZeroDerivativeAtZero) {
   EXPECT_DOUBLE_EQ(norm(v).dx(1), -0.8);
 }
 
-/// The closure under a normal traction.
+/// Returns the closure under a normal traction.
 template <class T>
 T closed(const BartonBandisClosure& closure, const T& lambda_n) {
   Contact<T> at;
@@ -259,8 +260,8 @@ TEST(BartonBandisClosure, OfNoMaximumIsLinear) {
   EXPECT_DOUBLE_EQ(linear.initial_compliance(), 1 / 50e9);
 }
 
-/// Along the slip, by how much R_n changes with lambda_n, of c_n: the compliance B' + mu dp/K_t of the face, where dp
-/// is what dilation adds for slip along its traction. An iterate with p = -0.2 slides against it.
+/// Returns the change of R_n with lambda_n along the slip, divided by c_n. It is the compliance B' + mu dp/K_t of the
+/// face, with the dilation dp for slip along the traction. An iterate with p = -0.2 slides against its traction.
 template <int dim>
 Real compliance_of_iterate(Real p_old) {
   using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
@@ -284,7 +285,7 @@ Real compliance_of_iterate(Real p_old) {
   EXPECT_EQ(contact_residual<dim>(law, c, jump, traction, old, R), ContactState::slip);
   contact_residual<dim>(law, c, w, lambda, old, R_value);
   for (int i = 0; i < dim; ++i) EXPECT_EQ(R[i].val(), R_value[i]);
-  EXPECT_NEAR(R_value[0], 0, 1e-15);  // the gap dilates by |p| all the same
+  EXPECT_NEAR(R_value[0], 0, 1e-15);  // the gap dilates by |p| in both directions
   Real sum = R[0].dx(dim);
   for (int i = 1; i < dim; ++i) sum -= law.friction.coefficient * (dim == 2 ? 1 : direction[i - 1]) * R[0].dx(dim + i);
   return sum / c.normal;
@@ -296,7 +297,7 @@ TEST(JointLimits, SlipAgainstTheTractionDoesNotSoften) {
   EXPECT_NEAR(compliance_of_iterate<2>(0), dilates, 1e-14);
   EXPECT_NEAR(compliance_of_iterate<3>(0), dilates, 1e-14);
   EXPECT_NEAR(compliance_of_iterate<2>(0.05), dilates, 1e-14);
-  EXPECT_NEAR(compliance_of_iterate<2>(-0.05), -dilates, 1e-14);  // p_old is against z
+  EXPECT_NEAR(compliance_of_iterate<2>(-0.05), -dilates, 1e-14);  // p_old is opposite to z
   EXPECT_NEAR(compliance_of_iterate<3>(-0.05), -dilates, 1e-14);
 }
 

@@ -1,4 +1,4 @@
-// The joint law in series with a block of rock: every contact regime, cyclic shear, shear that turns.
+// Joint law in series with a block of rock: every contact regime, cyclic shear, rotating shear.
 #include "laws/joint.hpp"
 
 #include <vector>
@@ -14,7 +14,7 @@ struct Regime {
   ClosedForm exact;
 };
 
-/// Closed form: a quadratic in the normal force N in each regime.
+/// Closed form: in each regime, a quadratic equation in the normal force N.
 const std::vector<Regime> case_a1 = {
     {"open", 0.2, 0.2, 0, {ContactState::open, 0, 0, 0.2, 0.2}},
     {"stick", 0.05, -0.1, 0, {ContactState::stick, 0.033333333333333, -0.234281365494, 0, -0.021906211502}},
@@ -69,7 +69,7 @@ TEST(SeriesBlock, TheSameInThreeDimensionsInAnyShearDirection) {
   }
 }
 
-/// A column of height 1, G = 1e6, lambda = 1e3, with a very soft joint, Wollmann (2024), push and pull tests.
+/// Column of height 1, G = 1e6, lambda = 1e3, with a very soft joint: push and pull tests of Wollmann (2024).
 SeriesBlock<2> soft_joint() {
   SeriesBlock<2> block;
   block.law.elastic.inverse_stiffness = 1e5;
@@ -140,7 +140,7 @@ TEST(CyclicShear, WorkPerCycleIsTheAreaOfTheLoop) {
   block.law = plain_joint();
   const Real D = 0.5;
   const int n =
-      100;  // steps per branch; the corners of the loop, 2 S after its ends, lie on steps: trapezoids are exact
+      100;  // steps per branch; corners of the loop (2 S after its ends) coincide with steps: trapezoids are exact
   Real work = 0, last = 0;
   const auto go = [&](Real from, Real to, bool count) {
     for (int s = 1; s <= n; ++s) {
@@ -168,7 +168,7 @@ TEST(CyclicShear, DoesNotDriftOverAThousandCycles) {
   EXPECT_NEAR(block.lambda[1], -0.18, 1e-9);
 }
 
-/// Shear that turns by a right angle; implicit Euler is the radial return.
+/// Shear path with a right angle; implicit Euler equals radial return.
 TEST(RotatingShear, CornerPath) {
   const struct {
     int steps;
@@ -188,8 +188,7 @@ TEST(RotatingShear, CornerPath) {
   }
 }
 
-/// The plastic jump of steady circling, -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)), turn D a
-/// step.
+/// Plastic jump of steady circular motion, with the angle D per step: -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)).
 TEST(RotatingShear, Circle) {
   const Real pi = 3.14159265358979323846, R = 0.5, S = 0.27;
   for (int n : {8, 64}) {

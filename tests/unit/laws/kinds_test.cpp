@@ -1,4 +1,4 @@
-// What every law of laws/joint_kinds.hpp must fulfil, and how several laws are one.
+// Common requirements on every law of laws/joint_kinds.hpp, and the combination of laws.
 #include "laws/joint.hpp"
 #include "series_block.hpp"
 
@@ -8,7 +8,7 @@
 namespace sprekk::laws::testing {
 namespace {
 
-/// A value that the entry allows, of the size that its unit suggests.
+/// Returns an allowed value of the entry, with a magnitude typical of its unit.
 Real typical(const Entry& entry) {
   if (entry.otherwise && std::isfinite(*entry.otherwise) && *entry.otherwise != 0) return *entry.otherwise;
   const std::pair<const char*, Real> usual[] = {
@@ -40,7 +40,7 @@ void for_each_kind(const Kinds<Ks...>&, const Test& test) {
   (test_one(typical<Ks>()), ...);
 }
 
-/// The tractions of solutions and those that iterates visit; slips; numbers that laws have kept.
+/// Tractions of solutions and of iterates; slips; values of history variables.
 const Real tractions[] = {-1e12, -1e9, -4e7, -1e6, -2e4, -10, -1e-9, 0, 1e-9, 10, 1e6};
 const Real slips[] = {0, 1e-12, 1e-5, 3e-3};
 const Real kept[] = {0, 1e-4, 1};
@@ -52,11 +52,12 @@ Contact<T> contact_at(const T& lambda_n, const T& slip, const Real* history) {
   at.plastic_slip = at.slip_of_step = at.plastic_jump[0] = slip;
   at.shear = T(1e6);
   at.wear = T(1);
-  at.history = {history, 0};  // all numbers are the same
+  at.history = {history, 0};  // stride 0: all numbers are equal
   return at;
 }
 
-/// f(contact) is finite and its derivatives by Sacado are those of differences, at a kink those of one side.
+/// Checks that f(contact) is finite. Compares its derivatives by Sacado with differences; at a kink with a one-sided
+/// difference.
 template <class F>
 void expect_differentiable(const F& f) {
   using Fad = Sacado::Fad::SFad<Real, 2>;
@@ -119,7 +120,7 @@ TEST(KindsOfJoints, ElasticityHasItsDerivatives) {
   });
 }
 
-/// In the separation, which takes the place of the normal traction, from overlapping to wide apart.
+/// Derivatives in the separation, which replaces the normal traction, from overlap to wide opening.
 TEST(KindsOfJoints, BondsHaveTheirDerivatives) {
   for_each_kind(BondKinds(), [](const auto& law) {
     for (const Real separation : {1e-16, 1e-12, 1e-10})  // m per Pa of the tractions
@@ -135,7 +136,8 @@ TEST(KindsOfJoints, BondsHaveTheirDerivatives) {
   });
 }
 
-/// Of closed joints, narrow and wide ones; at a kink that of one side. Never above the mechanical aperture.
+/// Derivatives for closed, narrow and wide joints; at a kink a one-sided derivative. The hydraulic aperture does not
+/// exceed the mechanical one.
 TEST(KindsOfJoints, HydraulicAperturesHaveTheirDerivatives) {
   for_each_kind(ApertureKinds(), [](auto law) {
     if constexpr (std::is_same_v<decltype(law), BartonAperture>) law.complete();
@@ -149,7 +151,7 @@ TEST(KindsOfJoints, HydraulicAperturesHaveTheirDerivatives) {
   });
 }
 
-/// JRC 10: JRC^2.5 = 316.2277660168 um, so that 100 um carry as 31.6 um and 0.4 mm as if they were smooth.
+/// With JRC 10, JRC^2.5 = 316.2277660168 um: 100 um conduct like 31.6 um, and 0.4 mm like a smooth joint.
 TEST(KindsOfJoints, BartonsHydraulicApertureKnownByHand) {
   BartonAperture law{10};
   law.complete();
@@ -171,8 +173,8 @@ TEST(KindsOfJoints, DamageHasItsDerivatives) {
   });
 }
 
-/// No two entries of a law, and no two laws of a role, have a name in common; entries of the same name in several laws
-/// measure the same.
+/// Checks that names are unique among the entries of a law and among the laws of a role. Entries with equal names in
+/// several laws must have equal units.
 template <class... Ks>
 void expect_distinct(const Kinds<Ks...>&) {
   const std::set<std::string> names = {Ks::name...};
@@ -200,7 +202,7 @@ TEST(KindsOfJoints, HaveNamesOfTheirOwn) {
   expect_distinct(DriverKinds());
 }
 
-/// A joint that closes like a spring up to the largest compression that it has known, and half as far beyond it.
+/// Joint that closes like a spring up to its largest past compression, and with half the compliance beyond.
 struct Pressed {
   static constexpr int n_history = 1;
   Real compliance = 0;
@@ -216,7 +218,7 @@ struct Pressed {
   void commit(const Contact<Real>& at, const Numbers<Real>& kept) const { kept[0] = std::max(kept[0], -at.lambda_n); }
 };
 
-/// Coulomb's law whose coefficient falls with the length of the path that the joint has slipped.
+/// Coulomb's law whose coefficient decreases with the length of the slip path.
 struct Worn {
   static constexpr int n_history = 2;
   Real coefficient = 0;
@@ -249,7 +251,7 @@ TEST(Kinds, AreTheLawThatTheyAreGiven) {
   EXPECT_EQ(bound(law, 4), 1);
 }
 
-/// Each law finds its own numbers among those of the face, in whatever order they are stored.
+/// Each law finds its own history variables among those of the face, for any stride.
 TEST(JointLaw, LawsKeepNumbersOfAFace) {
   const JointLaw<LinearShear, Worn, NormalGap<ConstantDilation, Pressed>> law{{}, {0.5}, {0, {}, {0.1}}};
   ASSERT_EQ(law.n_history(), 3);
@@ -272,7 +274,7 @@ TEST(JointLaw, LawsKeepNumbersOfAFace) {
   }
 }
 
-/// Faces that touch follow their elastic law however large the shear traction is; open ones bear none.
+/// Closed faces follow their elastic law for any shear traction; open faces transmit no shear.
 TEST(JointLaw, NoSlipIsElasticAlone) {
   constexpr Real K = 2;
   const JointLaw<LinearShear, NoSlip> law{{1 / K}, {}};
@@ -291,8 +293,8 @@ TEST(JointLaw, NoSlipIsElasticAlone) {
   EXPECT_NEAR(R[1], 0, 1e-12);
 }
 
-/// Where slip weakens the joint, a bound that goes on to negative slip rises there. Neither it nor the bound of slip
-/// that a face would undo by sticking makes a state.
+/// A slip-weakening bound, extended linearly to negative slip, increases there. Backward slip at this bound is not a
+/// state. A face must also not stick at a bound that exists only with its slip.
 TEST(JointLaw, NoStateSlidesBackwardsOrSticksForItsSlip) {
   const JointLaw<LinearShear, SlipWeakeningFriction> softens{{}, {0.6, 0.4, 0.2}};
   const JointLaw<LinearShear, MobilisedBartonChoubeyFriction> hardens{{}, {{0, 1, 30, 70}, 1}};
@@ -302,11 +304,12 @@ TEST(JointLaw, NoStateSlidesBackwardsOrSticksForItsSlip) {
     return contact_residual<2>(law, {1, 1e-6}, w, lambda, old, R, {zero, 0});
   };
   Real R[2];
-  residual(softens, -0.05, 0.3 * (0.4 + 0.2 * 1.25), R);  // the line through peak and residual bound
+  residual(softens, -0.05, 0.3 * (0.4 + 0.2 * 1.25), R);  // on the line through peak and residual bound
   EXPECT_GT(std::abs(R[1]), 0.01);
   EXPECT_EQ(residual(softens, 0.05, 0.3 * (0.4 + 0.2 * 0.75), R), ContactState::slip);
   EXPECT_NEAR(R[1], 0, 1e-15);
-  EXPECT_EQ(residual(hardens, 0.5, 0.1, R), ContactState::slip);  // bears 0.3 tan(30 degrees) as long as it has slipped
+  EXPECT_EQ(residual(hardens, 0.5, 0.1, R), ContactState::slip);  // the bound is 0.3 tan(30 degrees) while the face
+                                                                  // slips
   EXPECT_NEAR(R[1], 0.1 - 0.3 * std::tan(M_PI / 6), 1e-15);
 }
 

@@ -1,4 +1,4 @@
-// What slip wears of faces that are open at the end of a step.
+// Wear by slip on faces that are open at the end of a step.
 #include "laws/joint.hpp"
 
 #include <gtest/gtest.h>
@@ -8,16 +8,16 @@
 namespace sprekk::laws::testing {
 namespace {
 
-constexpr Real tangent = 0.1, before = 1e-3;  // of dilation; the slip before the step, m
+constexpr Real tangent = 0.1, before = 1e-3;  // tangent of the dilation angle; slip before the step, m
 
-/// A step of a face that bears nothing, from a joint that has slipped by `before`.
+/// Step of a face without traction, on a joint with previous slip `before`.
 template <int dim>
 class OpenFace {
  public:
   explicit OpenFace(const Joint& law) : law_(law), kept_(law.n_history(), 0) {
     commit(ContactState::slip, 0, before, 0);
   }
-  /// The gap after the slip, where a share of it has worn.
+  /// Returns the gap after the slip, if a fraction `share` of the slip wears the joint.
   Real gap(Real slip, Real share) const {
     auto at = contact_after(slip);
     at.rubs = share;
@@ -35,7 +35,7 @@ class OpenFace {
     set(normal, slip, w), set(slip, p), set(old, p_old);
     law_.commit(converged<dim>(law_, state, w, lambda, p, p_old, {kept_.data()}), {kept_.data()});
   }
-  /// w_n - g at the beginning of the next step.
+  /// Returns w_n - g at the beginning of the next step.
   Real apart(Real normal, Real slip) const {
     Real p[dim - 1];
     set(slip, p);
@@ -67,8 +67,8 @@ class OpenFace {
   std::vector<Real> kept_;
 };
 
-/// Between the gap of a joint that is as it was and that of one that has slipped on, all open faces are: those above
-/// the first wear nothing, others just as much as makes them touch, and the next step finds them open.
+/// Checks open faces between the gaps of the unworn and the fully worn joint. Faces above the unworn gap do not wear.
+/// Other faces wear until the sides just touch, and the next step finds them open.
 template <int dim>
 void expect_worn_until_they_fit(const Joint& law) {
   constexpr Real slip = 4e-3;
@@ -115,7 +115,7 @@ TEST(OpenJoint, WearsUntilItFits) {
   expect_worn_until_they_fit<3>(mobilised());
 }
 
-/// Wear that goes by the compression or by the work of friction needs traction.
+/// Wear by compression or by frictional work needs traction.
 TEST(OpenJoint, WearsNothingByLoadsThatItDoesNotBear) {
   for (const Driver& driver : {Driver(CompressionDriver{1e6}), Driver(WorkDriver{1e6})}) {
     Joint law = worn_by(IsotropicDamage{{0.8, 0.3, 5e-3, 5e-3}});

@@ -1,5 +1,5 @@
-// Closure and tilt of rough joints, and stiffnesses that grow with the compression, at values known by hand or computed
-// apart from this code.
+// Closure and tilt of rough joints, and stiffnesses that increase with compression: values by hand or computed
+// independently.
 #include "laws/joint.hpp"
 
 #include <gtest/gtest.h>
@@ -60,8 +60,8 @@ TEST(PowerShear, StiffensWithCompression) {
   EXPECT_EQ(law.compliance(at), law.initial_compliance());
 }
 
-/// The angle at which a slab of 50 mm, 2700 kg/m^3, slides on a joint tilted to it: tau = b(N) with N = gamma h cos(a),
-/// tau = gamma h sin(a) per area of the joint.
+/// Angle at which a slab of 50 mm, 2700 kg/m^3 slides on a tilted joint: tau = b(N) with N = gamma h cos(a), tau =
+/// gamma h sin(a) per joint area.
 TEST(BartonChoubey, TiltOfASlab) {
   const auto slides_at = [](const BartonChoubeyFriction& law) {
     const Real weight = 2700 * 9.81 * 0.05;
@@ -76,7 +76,7 @@ TEST(BartonChoubey, TiltOfASlab) {
   };
   EXPECT_NEAR(slides_at({6, 100e6, 29, 70}), 60.080516063, 1e-8);
   EXPECT_NEAR(slides_at({4, 50e6, 26, 70}), 44.907117311, 1e-8);
-  EXPECT_NEAR(slides_at({10, 100e6, 30, 70}), 70, 1e-9);  // without the largest angle it would never slide
+  EXPECT_NEAR(slides_at({10, 100e6, 30, 70}), 70, 1e-9);  // without the bound on the angle it would never slide
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One joint in series with a block of rock under uniform strain: the joint law without a mesh.
+// Joint in series with a block of rock under uniform strain: tests of the joint law without a mesh.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace sprekk::laws::testing {
 
-/// The first kinds of each role, whose numbers tests set.
+/// Joint law with the first kind of each role; tests set its parameters.
 using SimpleJoint = JointLaw<LinearShear, CoulombFriction, NormalGap<ConstantDilation, BartonBandisClosure>>;
 
 /// Solves A x = b by Gaussian elimination with partial pivoting; b becomes x.
@@ -36,19 +36,19 @@ void solve(Real (&A)[n][n], Real (&b)[n]) {
   }
 }
 
-/// A block with stiffnesses k_n, k_s and one joint; its top is displaced by d = (n, t1[, t2]):
+/// Block with stiffnesses k_n, k_s and one joint. The top of the block has the displacement d = (n, t1[, t2]):
 ///   w + lambda/k - d = 0,  R(w, lambda) = 0.
 template <int dim>
 struct SeriesBlock {
   SimpleJoint law;
   Real k_n = 3, k_s = 1;
-  Real c = 1;  ///< constant of the augmentation
+  Real c = 1;  ///< augmentation constant
   std::array<Real, dim - 1> p_old{};
   Real w[dim] = {}, lambda[dim] = {};
   ContactState state = ContactState::stick;
   int iterations = 0;
 
-  /// One step of implicit Euler by Newton's method, from the present state; the plastic jump stays as it is.
+  /// Solves one step of implicit Euler by Newton's method from the present state. Does not update p_old.
   void step(const std::array<Real, dim>& d) {
     Real size = 0;
     for (Real value : d) size = std::max(size, std::abs(value));
@@ -66,7 +66,7 @@ struct SeriesBlock {
     ADD_FAILURE() << "Newton's method did not converge";
   }
 
-  /// The plastic tangential jump of the present state.
+  /// Returns the plastic tangential jump of the present state.
   std::array<Real, dim - 1> plastic() const {
     Real old[dim - 1], elastic[dim], part[dim];
     std::copy(p_old.begin(), p_old.end(), old);
@@ -81,7 +81,7 @@ struct SeriesBlock {
   }
 
  private:
-  /// Correction x of (w, lambda).
+  /// Computes the Newton correction x of (w, lambda).
   void newton_step(const std::array<Real, dim>& d, Real (&x)[2 * dim]) {
     using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
     Fad jump[dim], traction[dim], R[dim];
@@ -105,8 +105,8 @@ struct SeriesBlock {
   }
 };
 
-/// K_t = 2, mu = 0.6, theta = 10 degrees, g0 = 0.01, Du = 0.1, K_n = 5. With k_n = 3 and k_s = 1 the series stiffness
-/// in shear is K_s = 2/3.
+/// Joint with K_t = 2, mu = 0.6, theta = 10 degrees, g0 = 0.01, Du = 0.1, K_n = 5. In series with k_s = 1 its shear
+/// stiffness is K_s = 2/3; tests use k_n = 3.
 inline SimpleJoint reference_joint() {
   SimpleJoint joint;
   joint.elastic.inverse_stiffness = 1 / 2.0;
@@ -117,20 +117,20 @@ inline SimpleJoint reference_joint() {
   return joint;
 }
 
-/// The same without dilation, closure and gap.
+/// Reference joint without dilation, closure and gap.
 inline SimpleJoint plain_joint() {
   SimpleJoint joint = reference_joint();
   joint.gap = {};
   return joint;
 }
 
-/// What the block does, in 2D, by closed form.
+/// Closed-form state of the block in 2D.
 struct ClosedForm {
   ContactState state;
   Real lambda_t, lambda_n, plastic, opening;
 };
 
-/// In each regime the normal force N solves the quadratic equation a N + Du N/(Du K_n + N) = b; one step from p_old.
+/// Returns the state after one step from p_old. In each regime the normal force N solves a N + Du N/(Du K_n + N) = b.
 inline ClosedForm closed_form(const SimpleJoint& law, Real k_n, Real k_s, Real d_t, Real d_n, Real p_old) {
   const Real Du = law.gap.closure.maximum, K_n = law.gap.closure.stiffness, g0 = law.gap.initial;
   const Real mu = law.friction.coefficient, tan = law.gap.dilation.tangent,

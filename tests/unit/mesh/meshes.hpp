@@ -1,4 +1,4 @@
-// Small meshes and measures for the tests of the mesh package.
+// Small meshes and geometric measures for the tests of the mesh package.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ inline BoxMesh::Fracture fracture(std::vector<Real> lower, std::vector<Real> upp
   return result;
 }
 
-/// The box [0, n] in unit steps.
+/// Returns the box [0, n] with cells of unit size.
 inline BoxMesh unit_steps(const std::string& cell, std::vector<int> n) {
   BoxMesh box;
   box.cell = cell;
@@ -31,7 +31,8 @@ inline BoxMesh unit_steps(const std::string& cell, std::vector<int> n) {
   return box;
 }
 
-/// A 6 x 4 [x 2] box with an immersed fracture "a", one "b" that crosses it, and one "c" from it to the north side.
+/// Returns a 6 x 4 [x 2] box with three fractures: "a" is immersed, "b" crosses "a", "c" extends from "a" to the north
+/// side.
 inline BoxMesh crossed(const std::string& cell) {
   if (dim_of(cell) == 2) {
     auto box = unit_steps(cell, {6, 4});
@@ -47,7 +48,7 @@ inline BoxMesh crossed(const std::string& cell) {
   return box;
 }
 
-/// The volume of a cell: the sum of the tetrahedra (2D: triangles) between its first node and its faces.
+/// Returns the volume of a cell: the sum over the tetrahedra (2D: triangles) between its first node and its faces.
 inline Real cell_volume(const GlobalMesh& mesh, GlobalIndex cell) {
   const int dim = mesh.dim();
   const auto x = [&](int k) { return point(mesh, mesh.cells[cell * n_nodes(mesh.shape) + k]); };
@@ -69,13 +70,13 @@ inline Vector cell_centre(const GlobalMesh& mesh, GlobalIndex cell) {
   return (1.0 / n) * sum;
 }
 
-/// Unit normal of a fracture face, from minus to plus.
+/// Returns the unit normal of a fracture face, from minus to plus.
 inline Vector normal(const GlobalMesh& mesh, const GlobalMesh::FractureFace& face) {
   const Vector area = area_vector(mesh, face.cell[minus], face.local_face[minus]);
   return (1 / norm(area)) * area;
 }
 
-/// Marks the faces whose centre `selected` picks, from the lower cell, as `fracture`.
+/// Returns the faces whose centre satisfies `selected`, marked as `fracture` from the cell with the lower number.
 template <class Predicate>
 std::vector<MarkedFace> mark(const GlobalMesh& mesh, int fracture, const Predicate& selected) {
   std::vector<MarkedFace> result;
@@ -89,7 +90,7 @@ std::vector<MarkedFace> mark(const GlobalMesh& mesh, int fracture, const Predica
   return result;
 }
 
-/// The message of the Error that `work` throws, empty if none.
+/// Returns the message of the Error that `work` throws; empty if there is none.
 template <class Work>
 std::string error_of(const Work& work) {
   try {

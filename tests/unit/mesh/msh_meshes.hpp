@@ -1,4 +1,4 @@
-// The gmsh meshes of the tests, and a small one in words.
+// Gmsh meshes of the tests, and a small mesh as text.
 #pragma once
 
 #include <fstream>
@@ -22,7 +22,7 @@ inline std::string content_of(const std::string& name) {
   return text.str();
 }
 
-/// Fractures f1 ... fn without orientation.
+/// Returns options with the fractures f1 ... fn, without orientation.
 inline MshOptions fractures(int n) {
   MshOptions options;
   for (int f = 1; f <= n; ++f) options.fractures["f" + std::to_string(f)] = {};
@@ -35,14 +35,14 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// Two unit squares side by side with the fracture "f1" between them and the boundary "west".
+/// Two adjacent unit squares with the fracture "f1" between them and the boundary "west".
 inline const std::string two_squares =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
     "$PhysicalNames\n3\n1 1 \"f1\"\n1 2 \"west\"\n2 3 \"old rock\"\n$EndPhysicalNames\n"
     "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n"
     "$Elements\n4\n20 1 2 1 1 2 5\n21 1 2 2 2 1 4\n10 3 2 3 1 1 2 5 4\n11 3 2 3 1 2 3 6 5\n$EndElements\n";
 
-/// The same in version 4.1.
+/// Mesh `two_squares` in format 4.1.
 inline const std::string two_squares_4 =
     "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
     "$PhysicalNames\n3\n1 1 \"f1\"\n1 2 \"west\"\n2 3 \"old rock\"\n$EndPhysicalNames\n"

@@ -1,4 +1,4 @@
-// What is expected of the parts of a distributed mesh.
+// Checks of the parts of a distributed mesh.
 #pragma once
 
 #include <Teuchos_CommHelpers.hpp>
@@ -30,11 +30,11 @@ inline void expect_one_owner_each(const GlobalMesh& global, const Mesh& mesh) {
     EXPECT_EQ(sum_over_ranks(*mesh.comm, owners), std::vector<int>(owners.size(), 1));
 }
 
-/// Everything that the documentation of Mesh promises, by brute force on the global mesh.
+/// Checks all documented properties of Mesh by brute force on the global mesh. Collective.
 inline void expect_as_documented(const GlobalMesh& global, const std::vector<int>& part, const Mesh& mesh) {
   const int rank = mesh.comm->getRank(), dim = global.dim(), npc = n_nodes(global.shape),
             nfn = n_face_nodes(global.shape);
-  expect_one_owner_each(global, mesh);  // first, as it is collective and the assertions below may return
+  expect_one_owner_each(global, mesh);  // first, because it is collective and the assertions below may return
   const auto nodes_of = [&](GlobalIndex c) {
     return std::set<GlobalIndex>(&global.cells[c * npc], &global.cells[c * npc] + npc);
   };
@@ -50,7 +50,8 @@ inline void expect_as_documented(const GlobalMesh& global, const std::vector<int
       if (near.count(n)) cells.insert(c);
   for (const auto& f : global.fracture_faces)
     if (part[f.cell[minus]] == rank) cells.insert(f.cell[plus]);
-  const auto points_of = [&](const auto& face) {  // at corners, by their places: sides are split, places are not
+  const auto points_of = [&](const auto& face) {  // coordinates of corners: the sides have separate nodes at equal
+                                                  // points
     std::set<std::vector<Real>> points;
     for (int k = 0; k < n_face_corners(global.shape); ++k) {
       const auto x = point(global, nodes_of_face(global, face.cell[minus], face.local_face[minus])[k]);
@@ -58,7 +59,7 @@ inline void expect_as_documented(const GlobalMesh& global, const std::vector<int
     }
     return points;
   };
-  for (const auto& f : global.fracture_faces)  // of faces that end where an owned one does
+  for (const auto& f : global.fracture_faces)  // cells at faces that share an end with an owned face
     for (const auto& other : global.fracture_faces) {
       if (part[f.cell[minus]] != rank) continue;
       int shared = 0;
@@ -139,7 +140,7 @@ inline void expect_as_documented(const GlobalMesh& global, const std::vector<int
   EXPECT_EQ(mesh.region_names, global.region_names);
 }
 
-/// Every member, to the last bit.
+/// Checks that all members are bitwise equal.
 inline void expect_identical(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.comm, b.comm);
   const auto plain = [](const Mesh& m) {

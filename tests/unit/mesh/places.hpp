@@ -1,4 +1,4 @@
-// Meshes compared by places, not by numbers.
+// Comparison of meshes by coordinates instead of numbers.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace sprekk::mesh::testing {
 
-/// Boxes whose fractures cross, end on each other, at the boundary and in the rock, or have tips all around a face.
+/// Boxes whose fractures cross, or end at each other, at the boundary or in the rock; one face has tips all around.
 inline std::vector<BoxMesh> boxes(const std::string& cell) {
   const bool flat = dim_of(cell) == 2;
   std::vector<BoxMesh> result{crossed(cell),
@@ -29,7 +29,7 @@ inline std::vector<BoxMesh> boxes(const std::string& cell) {
   return result;
 }
 
-/// How often there is a node, a cell, a tip, or a face with its fracture or boundary, by place and not by number.
+/// Number of occurrences of each node, tip, cell and face (with its fracture or boundary), identified by coordinates.
 using Places = std::map<std::vector<long long>, int>;
 
 inline Places places_of(const GlobalMesh& mesh, bool with_cells = true) {
@@ -65,7 +65,7 @@ inline Places places_of(const GlobalMesh& mesh, bool with_cells = true) {
   return result;
 }
 
-/// The shapes of a mesh's cells: their edges from short to long, over the root of their volume.
+/// Returns the shapes of the cells: sorted edge lengths, divided by volume^(1/dim).
 inline std::set<std::vector<long long>> shapes_of(const GlobalMesh& mesh) {
   const CellGeometry geometry(mesh.shape);
   std::set<std::vector<long long>> result;

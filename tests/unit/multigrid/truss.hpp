@@ -1,4 +1,4 @@
-// Matrices of nodes to coarsen, and vectors on their nodes.
+// Matrices for coarsening, and vectors on their nodes.
 #pragma once
 
 #include <Teuchos_CommHelpers.hpp>
@@ -20,15 +20,17 @@ using fields::Vector;
 using fields::wrapped;
 using multigrid::NodeMatrix;
 
-/// Bars between all nodes of a lattice [n, n, height] that are at most sqrt(3) apart, each with a stiffness of its
-/// own: rigid motions cost nothing. `held` nodes with x = 0 are prescribed; `skew` makes it unsymmetric and keeps the
-/// translations; `few`: only the 14 bars of a node that are edges where six tetrahedra make up each cube.
+/// Bars between all nodes of a lattice [n, n, height] with a distance of at most sqrt(3). Each bar has its own
+/// stiffness, and rigid motions have zero energy.
+/// `held`: nodes with x = 0 are prescribed. `skew`: the matrix is unsymmetric, with translations still in its
+/// kernel.
+/// `few`: only the 14 bars per node that are edges when each cube is divided into six tetrahedra.
 struct Truss {
   explicit Truss(int n_, bool held = false, Real skew = 0, int height_ = 0, bool few_ = false)
       : n(n_), height(height_ > 0 ? height_ : n_), few(few_) {
     const auto comm = Tpetra::getDefaultComm();
     const int n_nodes = n * n * height, rank = comm->getRank(), size = comm->getSize();
-    std::vector<GlobalIndex> unknowns;  // uneven parts
+    std::vector<GlobalIndex> unknowns;  // partition with unequal parts
     for (GlobalIndex i = 3 * (GlobalIndex(n_nodes) * rank * rank / (size * size)),
                      end = 3 * (GlobalIndex(n_nodes) * (rank + 1) * (rank + 1) / (size * size));
          i < end; ++i)

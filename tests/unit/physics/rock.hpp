@@ -1,4 +1,4 @@
-// Small pieces of fractured rock as equation systems, and their blocks as dense matrices.
+// Small fractured domains as equation systems, with their blocks as dense matrices.
 #pragma once
 
 #include <Tpetra_Core.hpp>
@@ -32,7 +32,7 @@ struct Loads {
   std::vector<BoundaryTraction> tractions;
 };
 
-/// A mesh and the equations on it.
+/// Mesh and the equations on it.
 struct Rock {
   mesh::GlobalMesh global;
   RCP<const mesh::Mesh> mesh;
@@ -42,22 +42,22 @@ struct Rock {
 
   int dim() const { return mesh->dim(); }
 
-  /// Global block (row, column) of the Jacobian, the same on every rank.
+  /// Returns the global block (row, column) of the Jacobian, equal on every rank. Collective.
   Dense block(int row, int column) const { return test::gather(*system->matrix()(row, column)); }
 
-  /// Local number of an unknown's owner, or -1: sets x[block] at a global unknown.
+  /// Sets x[block] at a global unknown, on the rank that owns it.
   static void set(fields::BlockVector& x, int block, GlobalIndex unknown, Real value) {
     if (x[block]->getMap()->isNodeGlobalElement(unknown)) x[block]->replaceGlobalValue(unknown, value);
   }
 
-  /// Displacement of every node by a function of its place and its global number.
+  /// Sets the displacement of every owned node n to u(coordinates of n, component).
   template <class Function>
   void displace(fields::BlockVector& x, const Function& u) const {
     for (LocalIndex n = 0; n < mesh->n_owned_nodes; ++n)
       for (int i = 0; i < dim(); ++i) x[0]->replaceLocalValue(n * dim() + i, u(&mesh->coordinates[n * dim()], i));
   }
 
-  /// The output of a name, for the owned fracture faces of this rank.
+  /// Returns the output `name` of the owned fracture faces of this rank.
   std::vector<Real> output(const fields::BlockVector& x, const std::string& name) const {
     for (const auto& field : system->outputs(x))
       if (field.name == name) return field.values;
@@ -65,7 +65,8 @@ struct Rock {
   }
 };
 
-/// The bulk alone if the mesh has no fracture, else all three modules. Cells of region 1 are stiff, of region 0 soft.
+/// Returns the system of the bulk alone if the mesh has no fracture, else of all three modules. Cells of region 1 are
+/// stiff, of region 0 soft.
 inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}, const Loads& loads = {},
                       RCP<const Comm> comm = Tpetra::getDefaultComm(),
                       const std::vector<assembly::DirichletCondition>& conditions = {}) {
@@ -80,8 +81,8 @@ inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}
   return rock;
 }
 
-/// A box of 2 x 2 [x 2] squares or cubes of unit size, cut by the plane y = 1 ("a") and, if `crossing`, x = 1 ("b");
-/// turned by 20 degrees. Rock above y = 1 is stiff.
+/// Returns a box of 2 x 2 [x 2] unit squares or cubes, cut by the plane y = 1 ("a") and, if `crossing`, x = 1 ("b").
+/// The box is turned by 20 degrees. Rock above y = 1 is stiff.
 inline mesh::GlobalMesh cut_box(const std::string& cell, bool crossing) {
   const bool flat = mesh::testing::dim_of(cell) == 2;
   auto box = mesh::testing::unit_steps(cell, std::vector<int>(flat ? 2 : 3, 2));

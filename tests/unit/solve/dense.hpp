@@ -1,4 +1,5 @@
-// Distributed things gathered on every rank, and a dense solve in extended precision to compare with.
+// Gathering of distributed vectors and matrices on every rank, and a dense solver in extended precision for
+// comparisons.
 #pragma once
 
 #include "fake_problems.hpp"
@@ -33,7 +34,7 @@ inline void scatter(const std::vector<Real>& from, BlockVector& x) {
   }
 }
 
-/// All blocks of the matrix, with identity in rows of constrained unknowns.
+/// Returns all blocks as one matrix, with identity in rows of constrained unknowns.
 inline Dense gather_matrix(const BlockProblem& problem) {
   std::vector<std::size_t> first{0};
   for (const auto& block : problem.blocks()) first.push_back(first.back() + block.map->getGlobalNumElements());

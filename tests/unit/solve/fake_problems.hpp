@@ -1,4 +1,4 @@
-// Small BlockProblems to solve.
+// Small BlockProblems for tests of the solvers.
 #pragma once
 
 #include <Teuchos_CommHelpers.hpp>
@@ -27,7 +27,7 @@ inline RCP<const Map> make_map(const std::vector<GlobalIndex>& indices, const RC
   return rcp(new Map(n, Teuchos::arrayView(indices.data(), indices.size()), 0, comm));
 }
 
-/// Adds to a distributed matrix by (global row, global column); rows of other ranks are ignored.
+/// Adds entries to a distributed matrix by (global row, global column); rows of other ranks are ignored.
 class Filler {
  public:
   Filler(const RCP<const Map>& rows, const RCP<const Map>& columns)
@@ -51,16 +51,17 @@ struct GridOptions {
   bool faces = true, constraints = true;
   int singular_face = -1;  ///< a face whose bubble has no stiffness
   bool eliminate = true;   ///< bubble and traction are a local group
-  bool shares = false;     ///< the springs' matrix
-  Real mix = 0;            ///< of other components of u in a component of the jump
+  bool shares = false;     ///< shares the rows of the matrix of the springs (KeptRows)
+  Real mix = 0;            ///< weight of other components of u in a component of the jump
 };
 
-/// Springs on a grid of nodes, cut by a row of faces between two rows of nodes: 'displacement' u at nodes; at faces a
-/// 'bubble' a and a 'traction' l, with jump w = Q (u_p - u_q) + beta a:
-///   r_u = K u + Q^T l at p, -Q^T l at q, eta a at p, -eta a at the node above;  r_a = alpha a + eta (u_p - u_above) +
-///   beta l r_l = l_0 - min(l_0 + c w_0, 0) for the normal component, l_j - kt w_j for the others
-/// The lowest row of nodes is fixed, the highest one moved by t top(i) in direction 0. The last rank, if there are
-/// more, has no nodes; faces live elsewhere than their nodes.
+/// Springs on a grid of nodes, cut by a row of faces between two rows of nodes. Unknowns: 'displacement' u at nodes;
+/// 'bubble' a and 'traction' l at faces. The jump is w = Q (u_p - u_q) + beta a:
+///   r_u = K u + (Q^T l at p, -Q^T l at q, eta a at p, -eta a at the node above)
+///   r_a = alpha a + eta (u_p - u_above) + beta l
+///   r_l = l_0 - min(l_0 + c w_0, 0) for the normal component, l_j - kt w_j for the others
+/// The lowest row of nodes is fixed; the highest row moves by t top(i) in direction 0. With several ranks, the last
+/// rank has no nodes, and faces are on other ranks than their nodes.
 class GridProblem : public BlockProblem, public fields::Globalisation {
  public:
   static constexpr Real alpha = 3, eta = 0.4, beta = 0.7, c = 5, kt = 0.5;
@@ -185,7 +186,7 @@ class GridProblem : public BlockProblem, public fields::Globalisation {
   }
 
  private:
-  /// -1 inside, 0 for the fixed row, 1 for the moved one.
+  /// Returns 0 in the fixed row, 1 in the moved row, else -1.
   int row_of(GlobalIndex node) const {
     const int j = node / o_.nx;
     return j == 0 ? 0 : j == o_.ny - 1 ? 1 : -1;
@@ -280,7 +281,7 @@ class GridProblem : public BlockProblem, public fields::Globalisation {
   Real t_ = 0;
 };
 
-/// n independent copies of f(x, t, dt) = 0, the i-th on rank i % size.
+/// n independent copies of f(x, t, dt) = 0; copy i is on rank i % size.
 class ScalarProblem : public BlockProblem, public fields::Globalisation {
  public:
   using Function = std::function<Real(Real x, Real t, Real dt)>;
@@ -297,12 +298,12 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   }
 
   std::vector<Real> committed_times;
-  Real resistance = 0;      ///< what damping of 1 adds to the derivative
-  std::vector<Real> damps;  ///< all that were asked for, one after another; of several the largest
-  std::string free_body;    ///< that nothing ever resists
+  Real resistance = 0;      ///< derivative added by a damping of 1
+  std::vector<Real> damps;  ///< sequence of requested dampings; for several faces, the largest
+  std::string free_body;    ///< name of a floating body
   std::function<char(Real)> state_of;
-  Real tether_stiffness = 0;  ///< of what a tether of 1 pulls with; 0: it cannot be tethered
-  std::vector<Real> tethers;  ///< all that were asked for
+  Real tether_stiffness = 0;  ///< spring constant of a tether of 1; 0: none
+  std::vector<Real> tethers;  ///< sequence of requested tether stiffnesses
 
   void damp(Real everywhere, const std::vector<Real>& here) override {
     const Real damping = here.empty() ? everywhere : std::max(everywhere, *std::max_element(here.begin(), here.end()));
@@ -360,7 +361,7 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   Real spring() const { return tethers.empty() ? 0 : tether_stiffness * tethers.back(); }
   Real pull(LocalIndex i, Real x) const { return spring() > 0 ? spring() * (x - anchor_[i]) : 0; }
 
-  std::vector<Real> anchor_;  // [unknown] of the last tether
+  std::vector<Real> anchor_;  // [unknown] x at the last tether
   RCP<const Comm> comm_;
   Function f_, df_;
   std::vector<Block> blocks_;
