@@ -11,7 +11,7 @@ namespace {
 
 RCP<const Map> map_of(GlobalIndex n) { return rcp(new const Map(n, 0, Tpetra::getDefaultComm())); }
 
-/// Entry (i, j) of the test matrix of block (b, c): a band, whatever the block's size.
+/// Returns entry (i, j) of the banded test matrix of block (b, c).
 Real entry(int b, int c, GlobalIndex i, GlobalIndex j) {
   return std::abs(static_cast<int>(i - j)) > 2
              ? 0

@@ -8,12 +8,12 @@
 namespace sprekk::fields {
 namespace {
 
-/// Of A; every third number of odd rows is zero, though J has a place for it.
+/// Returns an entry of A. In odd rows every third entry is zero, although J stores it.
 Real number(GlobalIndex i, GlobalIndex j) {
   return i % 2 == 1 && j % 3 == 0 ? 0 : std::sin(static_cast<Real>(7 * i + 3 * j + 1));
 }
 
-/// Full rows of 150 places, three words of bits, spread over the ranks; in blocks of width x width.
+/// Matrix J with 150 full rows (three words of marks each), distributed over the ranks, in blocks of width x width.
 struct Full {
   static constexpr GlobalIndex n = 150;
   RCP<const Map> map;
@@ -38,7 +38,7 @@ struct Full {
   }
 
   template <class Visit>
-  void for_numbers(const Visit& visit) const {  // visit(row, column, place in the row, value)
+  void for_numbers(const Visit& visit) const {  // visit(row, column, position in the row, value)
     const auto numbers = J->numbers();
     for (LocalIndex row = 0; row < numbers.n_rows(); ++row)
       numbers.for_row(row, [&](LocalIndex c, std::size_t k) {
@@ -66,7 +66,7 @@ TEST(KeptRows, MultiplyAndGiveBackWhatWasThere) {
       x.replaceLocalValue(i, std::cos(static_cast<Real>(full.map->getGlobalElement(i))));
     kept.add_product(x, before);
     std::size_t n_before = 0;
-    for (const int every : {5, 3, 5}) {  // some are kept already, and are other ones in J; at last all
+    for (const int every : {5, 3, 5}) {  // some rows are saved already and have other values in J; finally all
       const auto marks = kept.marks(full.rows(every));
       full.for_numbers([&](GlobalIndex i, GlobalIndex j, std::size_t place, Real&) {
         if (changes(i, j, every)) marks.set(full.map->getLocalElement(i), place);

@@ -15,7 +15,7 @@ namespace {
 using mesh::testing::all_cells;
 using mesh::testing::crossed;
 
-/// Meshes of every shape: shared out by METIS, and with all cells on the last rank, so that the others own nothing.
+/// Returns meshes of all shapes, partitioned by METIS, and with all cells on the last rank (other ranks own nothing).
 std::vector<RCP<const mesh::Mesh>> meshes() {
   const auto comm = Tpetra::getDefaultComm();
   std::vector<RCP<const mesh::Mesh>> result;
@@ -36,7 +36,7 @@ TEST(Maps, StoreNoNumbersThatFollowOneAnother) {
   const int rank = comm->getRank(), size = comm->getSize();
   std::vector<GlobalIndex> in_order, dealt;
   for (GlobalIndex i = 0; i < rank + 2; ++i) {
-    in_order.push_back(GlobalIndex(rank) * (rank + 3) / 2 + i);  // 2, 3, 4, ... numbers on ranks 0, 1, 2, ...
+    in_order.push_back(GlobalIndex(rank) * (rank + 3) / 2 + i);  // 2, 3, 4, ... unknowns on ranks 0, 1, 2, ...
     dealt.push_back(i * size + (size - 1 - rank));
   }
   const auto first = make_map(in_order, comm);

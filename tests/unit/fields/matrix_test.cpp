@@ -9,8 +9,8 @@
 namespace sprekk::fields {
 namespace {
 
-/// Rows of nodes with `height` unknowns that name nodes with `width`: seven nodes on each rank, each coupled to itself
-/// and to others on this and the next rank; `scattered`: without one number, so that it is not made of blocks.
+/// Graph of blocks height x width: seven nodes per rank, each coupled to itself and to nodes of this and the next
+/// rank. `scattered`: one entry is missing, hence the graph does not consist of full blocks.
 struct Graph {
   Graph(int height_, int width_, bool scattered_) : height(height_), width(width_), scattered(scattered_) {
     const auto comm = Tpetra::getDefaultComm();

@@ -8,7 +8,8 @@
 namespace sprekk::fields {
 namespace {
 
-/// Five rows on each rank with three columns, also of the next rank; every `every`-th number is zero (0: none).
+/// Returns a matrix with five rows per rank and three entries per row, also in columns of the next rank. Every
+/// `every`-th value is zero (0: none).
 RCP<CrsMatrix> matrix(GlobalIndex every) {
   const auto comm = Tpetra::getDefaultComm();
   const GlobalIndex n = 5 * comm->getSize();

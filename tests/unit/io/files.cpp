@@ -40,8 +40,8 @@ TEST(Json, FullDiskLeavesTheEarlierFile) {
   EXPECT_TRUE(contains(message, path)) << message;
   EXPECT_TRUE(contains(message, "No space left")) << message;
   EXPECT_EQ(nlohmann::json::parse(content(path))["step"], 1);
-  comm->barrier();                             // all have read
-  io::write_json(*comm, path, {{"step", 3}});  // nothing of the failure is in the way
+  comm->barrier();                             // all ranks have read
+  io::write_json(*comm, path, {{"step", 3}});  // the failed attempt does not block the next one
   EXPECT_EQ(nlohmann::json::parse(content(path))["step"], 3);
 }
 
@@ -58,7 +58,7 @@ TEST(Json, IsWrittenInPlaceWhereThereIsRoom) {
   const auto comm = Tpetra::getDefaultComm();
   const Scratch scratch(*comm);
   const std::string path = scratch / "results.json";
-  EXPECT_FALSE(io::overwrite_json(*comm, path, {}));  // there is no such file
+  EXPECT_FALSE(io::overwrite_json(*comm, path, {}));  // the file does not exist
   io::write_json(*comm, path, {{"status", "running"}, {"steps", {1, 2, 3}}});
   scratch.on_rank_0([&] { fs::create_symlink("/dev/full", path + ".part"); });
   EXPECT_TRUE(io::overwrite_json(*comm, path, {{"status", "failed"}, {"steps", {1, 2, 3}}}));
@@ -83,7 +83,7 @@ TEST(DirectoryLock, IsHeldByOne) {
   comm->barrier();
   EXPECT_FALSE(fs::exists(path + "/.lock"));
   comm->barrier();
-  scratch.on_rank_0([&] { std::ofstream(path + "/.lock") << "process 1 on moon\n"; });  // of one that was killed
+  scratch.on_rank_0([&] { std::ofstream(path + "/.lock") << "process 1 on moon\n"; });  // lock of a killed process
   EXPECT_EQ(io::DirectoryLock(comm, path).take(), "");
 }
 
@@ -112,8 +112,8 @@ TEST(AppendDurably, KeepsWhatWasBefore) {
 }
 
 TEST(BringToDisk, ToleratesOnlyDirectoriesThatCannotBe) {
-  io::bring_to_disk("/proc");                                                  // answers EINVAL
-  for (const std::string path : {"/dev/null", "/proc/self/stat", "/nowhere"})  // EINVAL but no directories; absent
+  io::bring_to_disk("/proc");                                                  // returns EINVAL
+  for (const std::string path : {"/dev/null", "/proc/self/stat", "/nowhere"})  // EINVAL for other files; missing file
     EXPECT_TRUE(contains(error_of<Error>([&] { io::bring_to_disk(path); }), path)) << path;
 }
 

@@ -34,11 +34,11 @@ using Vector = std::array<Real, 3>;
 const std::vector<mesh::Shape> shapes{mesh::Shape::triangle, mesh::Shape::quadrilateral, mesh::Shape::tetrahedron,
                                       mesh::Shape::hexahedron};
 
-/// Rank r owns blocks_of(r) unit blocks of the row [0, n] x [0, 1] (x [0, 1]), rank 1 none.
+/// Number of unit blocks of rank r in the row [0, n] x [0, 1] (x [0, 1]); rank 1 has none.
 int blocks_of(int rank) { return rank == 0 ? 3 : rank == 1 ? 0 : 2; }
 int first_block_of(int rank) { return rank < 2 ? 3 * rank : 3 + 2 * (rank - 2); }
 
-/// Cells of one block in its corners; corner = x + 2 y + 4 z.
+/// Returns the cells of one block by corner numbers; corner = x + 2 y + 4 z.
 std::vector<std::vector<int>> cells_of_block(mesh::Shape shape) {
   switch (shape) {
     case mesh::Shape::triangle:
@@ -52,8 +52,9 @@ std::vector<std::vector<int>> cells_of_block(mesh::Shape shape) {
   }
 }
 
-/// The row of blocks with a ghost block after the owned ones. One fracture face in each block, on its first cell's
-/// first face, and its ghost. Node 0 belongs to the ghost block, so that points and nodes are numbered differently.
+/// Returns the row of blocks with a ghost block after the owned blocks. Each block has one fracture face on the first
+/// face of its first cell, with its ghost. Node 0 belongs to the ghost block; thus points and nodes have different
+/// numbers.
 mesh::Mesh row_of_blocks(const RCP<const Comm>& comm, mesh::Shape shape) {
   mesh::Mesh mesh;
   mesh.comm = comm;
@@ -109,7 +110,7 @@ Grid read(const std::string& path) {
   return reader->GetOutput();
 }
 
-/// Length, area or volume: the sum over the simplices that VTK cuts the cell into.
+/// Returns length, area or volume: the sum over the simplices of VTK's triangulation of the cell.
 Real measure(vtkCell* cell) {
   vtkNew<vtkIdList> ids;
   vtkNew<vtkPoints> points;

@@ -16,9 +16,9 @@ using ::testing::HasSubstr;
 
 const std::vector<std::string> simplices{"triangle", "tetrahedron"};
 
-using Front = std::function<Real(const Vector&)>;  ///< distance from it
+using Front = std::function<Real(const Vector&)>;  ///< distance from the front
 
-/// Halves the cells that the front may go through, `times` times by one halving each.
+/// Bisects the cells that the front may cross, once per pass, in `times` passes.
 void refine_towards(const Front& front, int times, Bisection& bisection) {
   for (int pass = 0; pass < times; ++pass) {
     const auto mesh = bisection.mesh();
@@ -34,7 +34,7 @@ void refine_towards(const Front& front, int times, Bisection& bisection) {
   }
 }
 
-/// A point in 2D, a circle in 3D.
+/// Returns the distance from a point (radius 0) or from a circle (3D).
 Front ring(const Vector& middle, Real radius) {
   return [=](const Vector& x) {
     const Vector r = x - middle;
@@ -42,7 +42,7 @@ Front ring(const Vector& middle, Real radius) {
   };
 }
 
-/// Around the corner of a fracture, if there is one.
+/// Returns a front around the lower corner of the first fracture, else around an inner point.
 Front front_in(const BoxMesh& box) {
   Vector middle{0.6, 0.45, box.cells.size() == 2 ? 0 : 0.3};
   if (!box.fractures.empty())
@@ -50,7 +50,8 @@ Front front_in(const BoxMesh& box) {
   return ring(middle, box.cells.size() == 2 ? 0 : 0.4);
 }
 
-/// Volumes of regions, areas of boundaries and of fractures, by name; and sums of their area vectors.
+/// Returns the volumes of regions, the areas of boundaries and of fractures, and the sums of their area vectors, by
+/// name.
 std::map<std::string, std::array<Real, 4>> sizes_of(const GlobalMesh& mesh) {
   std::map<std::string, std::array<Real, 4>> sizes;
   const auto add = [&](const std::string& name, Real size, const Vector& vector) {
@@ -72,8 +73,8 @@ std::map<std::string, std::array<Real, 4>> sizes_of(const GlobalMesh& mesh) {
   return sizes;
 }
 
-/// Every face of a cell is shared with one other cell, or on one boundary, or on one side of a fracture; both sides of
-/// faces of fractures have the same corners. No cell is inside out.
+/// Checks that every face of a cell is shared with one other cell, or lies on one boundary or one side of a fracture.
+/// Both sides of a fracture face have the same corners. No cell is inverted.
 void expect_conforming(const GlobalMesh& mesh) {
   const int n = n_faces(mesh.shape);
   std::vector<int> known(mesh.n_cells() * n, 0);
@@ -84,7 +85,7 @@ void expect_conforming(const GlobalMesh& mesh) {
     std::array<SortedCorners, 2> points{};
     for (int side : {minus, plus}) {
       const auto at = face.cell[side] * n + face.local_face[side];
-      if (neighbour[at] < 0) ++known[at];  // of a fracture of one face no node is split
+      if (neighbour[at] < 0) ++known[at];  // a fracture of one face splits no node
       points[side] = sorted_corners(mesh, face.cell[side], face.local_face[side]);
       for (auto& node : points[side]) node = node < 0 ? node : mesh.parent_node[node];
       std::sort(points[side].begin(), points[side].end());
@@ -124,13 +125,13 @@ TEST(Bisect, ConformsAndKeepsRegionsBoundariesAndFractures) {
       const auto sizes = sizes_of(fine);
       for (const auto& [name, size] : sizes_of(coarse))
         for (int i = 0; i < 4; ++i) EXPECT_NEAR(sizes.at(name)[i], size[i], 1e-10) << cell << " " << name;
-      if (coarse.dim() == 2) {  // no fracture has become longer, or parts
+      if (coarse.dim() == 2) {  // no fracture became longer or was divided
         EXPECT_EQ(n_tips(fine), n_tips(coarse));
       }
     }
 }
 
-/// A box of 3 steps whose nodes inside are moved.
+/// Returns a box of 3 steps with displaced inner nodes.
 GlobalMesh shaken(GlobalMesh mesh) {
   const int dim = mesh.dim();
   for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node) {
@@ -141,7 +142,7 @@ GlobalMesh shaken(GlobalMesh mesh) {
   return mesh;
 }
 
-/// A bounded number of shapes: those that 6 passes have made are all there are.
+/// Bisection towards a front produces a bounded number of shapes: the worst shape occurs in the first 6 passes.
 TEST(Bisect, KeepsShapesTowardsAFront) {
   for (const auto& cell : simplices) {
     const auto box = unit_steps(cell, std::vector<int>(dim_of(cell), 3));
@@ -163,7 +164,7 @@ TEST(Bisect, KeepsShapesTowardsAFront) {
   }
 }
 
-/// Pressed along the diagonal until each cell has several longest edges.
+/// Compresses the mesh along the diagonal until each cell has several longest edges.
 GlobalMesh pressed(GlobalMesh mesh) {
   const int dim = mesh.dim();
   const Real less = (1 - (dim == 2 ? std::sqrt(1.0 / 3) : 0.5)) / dim;
@@ -174,7 +175,7 @@ GlobalMesh pressed(GlobalMesh mesh) {
   return mesh;
 }
 
-/// The corners of every second cell in another order.
+/// Rotates the local node numbers of every second cell.
 GlobalMesh turned(GlobalMesh mesh) {
   const int n = n_corners(mesh.shape);
   for (GlobalIndex c = 0; c < mesh.n_cells(); c += 2)
@@ -188,7 +189,7 @@ GlobalMesh turned(GlobalMesh mesh) {
   return mesh;
 }
 
-/// Which of equal edges is halved first, too, is a matter of places.
+/// The choice between edges of equal length, too, depends on coordinates only.
 TEST(Bisect, DoesNotDependOnNumbers) {
   for (const auto& cell : simplices)
     for (auto box : boxes(cell)) {
@@ -200,8 +201,8 @@ TEST(Bisect, DoesNotDependOnNumbers) {
     }
 }
 
-/// As many halvings as the mesh has dimensions make a cell half as wide: faces are cut alike from both sides, so that
-/// no cell needs more; in boxes the shape stays.
+/// As many bisections as dimensions halve the width of a cell. Both sides cut a face equally, so no cell needs more
+/// bisections. Cells of boxes keep their shape.
 TEST(Bisect, HalvesChildrenToo) {
   for (const auto& cell : simplices)
     for (const bool shakes : {false, true}) {

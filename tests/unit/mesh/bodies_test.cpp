@@ -18,7 +18,8 @@ TEST(Bodies, FracturesJoin) {
   EXPECT_EQ(find_bodies(parse_msh(two_squares, "two", fractures(1))).n(), 1);
 }
 
-/// Unit squares by the column and row of their lower left corners; nodes are shared where corners are.
+/// Returns a mesh of unit squares at the given columns and rows (lower left corners). Squares share nodes at common
+/// corners.
 GlobalMesh squares(const std::vector<std::array<int, 2>>& places) {
   GlobalMesh mesh;
   mesh.shape = Shape::quadrilateral;

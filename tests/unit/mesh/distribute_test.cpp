@@ -33,7 +33,8 @@ TEST(Distribute, IsAsDocumentedForScatteredAndSidedParts) {
     std::vector<int> scattered, sided;
     for (GlobalIndex c = 0; c < global.n_cells(); ++c) {
       scattered.push_back(static_cast<int>(c * c % 7) % comm->getSize());
-      sided.push_back(cell_centre(global, c)[1] > 2 ? comm->getSize() - 1 : 0);  // cut along fracture "a"; others empty
+      sided.push_back(cell_centre(global, c)[1] > 2 ? comm->getSize() - 1 : 0);  // cut along fracture "a"; further
+                                                                                 // ranks are empty
     }
     expect_as_documented(global, scattered, *distribute(global, scattered, comm));
     expect_as_documented(global, sided, *distribute(global, sided, comm));
@@ -110,7 +111,7 @@ TEST(Distribute, Errors) {
   EXPECT_THAT(error_of([&] { distribute(mesh, part, comm); }), HasSubstr("cell 3 is in part"));
   part.pop_back();
   EXPECT_THAT(error_of([&] { distribute(mesh, part, comm); }), HasSubstr("7 parts for 8 cells"));
-  mesh.coordinates[mesh.coordinates.size() - 1] += 0.1;  // a copy that the split has made
+  mesh.coordinates[mesh.coordinates.size() - 1] += 0.1;  // a node that the split has added
   EXPECT_THAT(error_of([&] { make_distributed(mesh, comm); }), HasSubstr("do not coincide"));
   mesh.coordinates.insert(mesh.coordinates.end(), {0, 0});
   EXPECT_THAT(error_of([&] { make_distributed(mesh, comm); }), HasSubstr("belongs to no cell"));

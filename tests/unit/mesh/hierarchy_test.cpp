@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// An axis-parallel segment (3D: rectangle); several of one name are one fracture.
+/// Axis-parallel segment (3D: rectangle) of a fracture; a fracture may have several.
 struct Piece {
   std::string fracture;
   Vector lower, upper;
@@ -28,17 +28,17 @@ struct Meeting {
   std::string name;
   int dimension, n_cells;
   Real measure;
-  std::vector<int> facets;  ///< on each cell, from each neighbour of one dimension more
+  std::vector<int> facets;  ///< per cell, from each neighbouring subdomain of one dimension more
 };
 
 struct HierarchyCase {
   std::string name;
   std::vector<Piece> pieces;
   std::vector<Meeting> meetings;
-  std::vector<int> tips;  ///< of each fracture
+  std::vector<int> tips;  ///< number of tips of each fracture
 };
 
-/// Splits a mesh along all faces whose centre `on(fracture, centre)` picks.
+/// Splits a mesh along all faces whose centre satisfies `on(fracture, centre)`.
 template <class Predicate>
 GlobalMesh split_along(const std::string& cell, std::vector<int> n, int order, std::vector<std::string> fractures,
                        const Predicate& on) {
@@ -65,7 +65,7 @@ GlobalMesh mesh_of(const HierarchyCase& c, const std::string& cell, int order) {
                      {names.begin(), names.end()}, is_on);
 }
 
-// In a 6 x 4 box, counted by hand.
+// 6 x 4 box, counted by hand.
 const std::vector<HierarchyCase> plane_cases{
     {"immersed", {{"a", {1, 2, 0}, {5, 2, 0}}}, {}, {2}},
     {"to the boundary", {{"a", {0, 2, 0}, {4, 2, 0}}}, {}, {1}},
@@ -91,7 +91,7 @@ const std::vector<HierarchyCase> plane_cases{
      {0, 2, 0}},
     {"a fracture that crosses itself", {{"a", {1, 2, 0}, {5, 2, 0}}, {"a", {3, 1, 0}, {3, 3, 0}}}, {}, {4}}};
 
-// In a 6 x 4 x 4 box, counted by hand.
+// 6 x 4 x 4 box, counted by hand.
 const std::vector<HierarchyCase> space_cases{
     {"triple point of planes through",
      {{"a", {0, 0, 2}, {6, 4, 2}}, {"b", {0, 2, 0}, {6, 2, 4}}, {"c", {3, 0, 0}, {3, 4, 4}}},
@@ -132,7 +132,7 @@ const std::vector<HierarchyCase> space_cases{
      {6, 4}},
     {"touching in one node only", {{"a", {1, 1, 2}, {3, 2, 2}}, {"b", {3, 2, 2}, {3, 4, 4}}}, {}, {6, 4}}};
 
-/// The plane case times the height 4.
+/// Returns the 2D case extruded to the height 4.
 HierarchyCase extruded(HierarchyCase c) {
   for (auto& piece : c.pieces) piece.upper[2] = 4;
   for (auto& meeting : c.meetings) meeting.dimension = 1, meeting.n_cells *= 4, meeting.measure *= 4;
@@ -140,7 +140,7 @@ HierarchyCase extruded(HierarchyCase c) {
   return c;
 }
 
-/// Calls use(case, cell, mesh) for all cells of both orders.
+/// Calls use(case, cell, mesh) for all types of cells, with orders 1 and 2.
 template <class Use>
 void for_all_cases(const Use& use) {
   for (const auto& cell : all_cells)
@@ -213,7 +213,7 @@ TEST(Hierarchy, HasTheEntitiesCountedByHand) {
   });
 }
 
-/// Mean of the corners of a cell of a subdomain.
+/// Returns the mean of the corners of a cell of a subdomain.
 Vector centre(const GlobalMesh& mesh, const Hierarchy& h, const Subdomain& s, GlobalIndex cell) {
   const GlobalIndex id = s.cells[cell];
   if (s.dimension == mesh.dim() - 1)
@@ -223,7 +223,7 @@ Vector centre(const GlobalMesh& mesh, const Hierarchy& h, const Subdomain& s, Gl
   return b < 0 ? point(mesh, a) : 0.5 * (point(mesh, a) + point(mesh, b));
 }
 
-/// The same of a facet, from its higher-dimensional cell.
+/// Returns the mean of the corners of a facet, from its higher-dimensional cell.
 Vector centre(const GlobalMesh& mesh, const Hierarchy& h, const Interface& interface, int facet) {
   const auto& higher = h.subdomains[interface.higher];
   const auto [cell, local] = interface.facets[facet];
@@ -236,7 +236,8 @@ Vector centre(const GlobalMesh& mesh, const Hierarchy& h, const Interface& inter
   return 0.5 * (point(mesh, nodes[local]) + point(mesh, nodes[next]));
 }
 
-/// Averages keep constants and, as all facets coincide with their cells, places; integrals keep their total.
+/// Checks that averages preserve constants and coordinates (facets and cells coincide) and that integrals preserve
+/// totals.
 void expect_projects(const GlobalMesh& mesh, const Hierarchy& h, const Interface& interface) {
   const auto& lower = h.subdomains[interface.lower];
   const std::size_t n_facets = interface.facets.size(), n_cells = lower.cells.size();
@@ -263,7 +264,7 @@ void expect_projects(const GlobalMesh& mesh, const Hierarchy& h, const Interface
   for (std::size_t j = 0; j < n_cells; ++j) on_cells.push_back(std::cos(2.0 * static_cast<Real>(j)));
   EXPECT_NEAR(total(interface.to_lower.integrate(on_facets)), total(on_facets), 1e-12);
   EXPECT_NEAR(total(interface.to_higher.integrate(on_cells)), total(on_cells), 1e-12);
-  const auto shared = interface.to_higher.integrate(lower.measures);  // each side has its share of the cell
+  const auto shared = interface.to_higher.integrate(lower.measures);  // each side has an equal part of the cell
   const Real n_on_cell = static_cast<Real>(n_facets) / static_cast<Real>(n_cells);
   for (std::size_t i = 0; i < n_facets; ++i) EXPECT_NEAR(shared[i], interface.measures[i] / n_on_cell, 1e-14);
 }
@@ -307,7 +308,7 @@ TEST(Hierarchy, SidesOfTheBulkAreThoseOfTheFractureFaces) {
 }
 
 TEST(Hierarchy, ObliqueLinesThroughOnePoint) {
-  // Four lines through the middle of a 4 x 4 box, whose diagonals triangles have.
+  // Four lines through the middle of a 4 x 4 box; two are diagonals along edges of triangles.
   for (int order : {1, 2}) {
     const auto mesh =
         split_along("triangle", {4, 4}, order, {"a", "b", "c", "d"}, [](const std::string& f, const Vector& x) {
@@ -323,7 +324,7 @@ TEST(Hierarchy, ObliqueLinesThroughOnePoint) {
 }
 
 TEST(Hierarchy, ObliquePlanesThroughOneLine) {
-  // The planes x = y, y = z, z = x through the diagonal of a cube, all of which Kuhn's tetrahedra have.
+  // The planes x = y, y = z, z = x through the diagonal of a cube; Kuhn's tetrahedra have faces on all of them.
   for (int order : {1, 2}) {
     const auto mesh =
         split_along("tetrahedron", {3, 3, 3}, order, {"a", "b", "c"}, [](const std::string& f, const Vector& x) {

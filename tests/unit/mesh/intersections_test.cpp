@@ -13,14 +13,15 @@
 namespace sprekk::mesh::testing {
 namespace {
 
-/// Length of all edges; of points how many.
+/// Returns the length of all edges, or the number of points.
 Real measure(const std::vector<Intersection>& intersections) {
   Real sum = 0;
   for (const auto& at : intersections) sum += at.x.size() == 1 ? 1 : norm(at.x[1] - at.x[0]);
   return sum;
 }
 
-/// Those that a mesh has on rank 0 and no other, as many as mesh-info counts.
+/// Returns the intersections of a mesh. Checks that rank 0 has all of them, without duplicates, and as many as
+/// mesh-info counts.
 std::vector<Intersection> expect_as_counted(const GlobalMesh& global, const Mesh& mesh) {
   const auto found = intersections(mesh);
   EXPECT_EQ(static_cast<GlobalIndex>(found.size()), mesh.comm->getRank() == 0 ? describe(global).n_intersections : 0);
@@ -30,7 +31,8 @@ std::vector<Intersection> expect_as_counted(const GlobalMesh& global, const Mesh
   return found;
 }
 
-/// Ranks cell by cell; and one on each side of fracture "a", which does not see what ends on the other side.
+/// Returns partitions of the cells: scattered, and two with one rank on each side of fracture "a". There, a rank has
+/// no cells on the other side, hence does not see fractures that end there.
 std::vector<std::vector<int>> other_parts(const GlobalMesh& mesh, int n) {
   std::vector<int> scattered, below, above;
   for (GlobalIndex c = 0; c < mesh.n_cells(); ++c) {
@@ -58,7 +60,7 @@ TEST(Intersections, AreThoseOfTheMeshHoweverItIsDistributed) {
           EXPECT_EQ(found[k].fractures, other[k].fractures);
         }
       }
-      for (const auto& at : found) {  // an X and a T
+      for (const auto& at : found) {  // a crossing (X) and a T
         EXPECT_EQ(at.fractures, at.x[0][0] < 3.5 ? (std::vector<int>{0, 0, 1, 1}) : (std::vector<int>{0, 0, 2}));
         EXPECT_EQ(at.nodes.size(), global.dim() == 2 ? 1u : order + 1u);
         if (at.x.size() == 3) {

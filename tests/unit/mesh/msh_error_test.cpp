@@ -17,7 +17,7 @@ std::string refusal(const std::string& text, const MshOptions& options = fractur
 
 struct Change {
   const char *from, *to;
-  std::vector<const char*> message;  ///< parts of it
+  std::vector<const char*> message;  ///< parts of the message
 };
 
 void expect_refusals(const std::string& text, const std::vector<Change>& changes) {
@@ -28,7 +28,7 @@ void expect_refusals(const std::string& text, const std::vector<Change>& changes
   }
 }
 
-/// What the section $Fractures may say of `two_squares`.
+/// Returns `two_squares` with the given lines in the section $Fractures.
 std::string told(const std::string& lines) {
   return replaced(two_squares, "$Nodes", "$Fractures\n" + lines + "$EndFractures\n$Nodes");
 }
@@ -183,7 +183,8 @@ TEST(MshError, FracturesAndBoundaries) {
       });
 }
 
-/// Three squares in a row; of the two faces between them each is in the groups of its line.
+/// Returns three squares in a row. `first` and `second` are the groups of the two faces between them, a character
+/// each.
 std::string three_squares(const std::string& first, const std::string& second) {
   std::string elements;
   int n = 0;
@@ -199,7 +200,7 @@ std::string three_squares(const std::string& first, const std::string& second) {
       n + 3, elements);
 }
 
-/// A face may be in several groups; the message names a choice of fractures that is then taken.
+/// A face may be in several groups. The message names a set of fractures that is valid.
 TEST(MshError, GroupsThatOverlap) {
   const auto listing = [](const std::vector<std::string>& names) {
     MshOptions options;
@@ -238,7 +239,7 @@ TEST(MshError, GroupsThatOverlap) {
   }
 }
 
-/// A cell in several groups has the region that is a part of the others, with a name before one without.
+/// A cell in several groups belongs to the smallest region contained in the others; regions with a name have priority.
 TEST(MshError, RegionsThatOverlap) {
   const auto regions = [](const std::vector<std::string>& of_cells) {
     std::string elements;

@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 struct MshCase {
   const char* name;
   int n_fractures;
-  int copies;              ///< counted by hand: what the fractures add to the nodes
-  std::vector<int> faces;  ///< of each fracture
+  int copies;              ///< number of nodes added by the fractures, counted by hand
+  std::vector<int> faces;  ///< number of faces of each fracture
   std::vector<Real> area;
   int tips, intersections, points;  ///< see MeshInfo
   Real volume;
@@ -25,8 +25,8 @@ struct MshCase {
 
 const Real slanted = std::hypot(1, 0.8), diagonal = 2 * std::hypot(0.8, 1);
 
-/// An arm of two segments away from others adds one corner, and with order 2 two middles; a point where n fractures
-/// arms meet adds n - 1; what lies on tips adds nothing.
+/// A fracture of two segments without others adds one corner, and for order 2 two middle nodes. A point where n arms
+/// of fractures meet adds n - 1 nodes. Nodes on tips add none.
 const std::vector<MshCase> msh_cases{
     {"immersed", 1, 3, {4}, {2}, 2, 0, 0, 16},
     {"immersed_order2", 1, 3 + 4, {4}, {2}, 2, 0, 0, 16},
@@ -52,13 +52,13 @@ const std::vector<MshCase> msh_cases{
     {"triangles_order2", 2, 9 + 5, {4, 2}, {4, 2}, 0, 1, 1, 16},
     {"squares", 2, 5 + 3, {4, 2}, {4, 2}, 0, 1, 1, 16},
     {"squares_order2", 2, 9 + 5, {4, 2}, {4, 2}, 0, 1, 1, 16},
-    {"hexahedra", 2, 3 * 3, {4, 4}, {4, 4}, 4 * 2, 2, 0, 32},  // three corners high
+    {"hexahedra", 2, 3 * 3, {4, 4}, {4, 4}, 4 * 2, 2, 0, 32},  // three layers of corners
     {"hexahedra_order2", 2, 5 * (3 + 4), {4, 4}, {4, 4}, 4 * 2, 2, 0, 32},
-    {"cubes", 2, 4 * 12 - 27, {4, 4}, {4, 4}, 0, 2, 0, 8},  // falls into four blocks
+    {"cubes", 2, 4 * 12 - 27, {4, 4}, {4, 4}, 0, 2, 0, 8},  // four separate blocks
     {"cubes_order2", 2, 4 * 45 - 125, {4, 4}, {4, 4}, 0, 2, 0, 8},
     {"patch", 1, 0, {2}, {0.5625}, 4, 0, 0, 8},                                  // all corners on the tip line
-    {"patch_order2", 1, 1, {2}, {0.5625}, 4, 0, 0, 8},                           // the middle of the diagonal opens
-    {"planes", 2, 3, {8, 8}, {2.25, 2.25}, 16, 2, 0, 8},                         // the middle of the line of crossing
+    {"patch_order2", 1, 1, {2}, {0.5625}, 4, 0, 0, 8},                           // the middle of the diagonal is split
+    {"planes", 2, 3, {8, 8}, {2.25, 2.25}, 16, 2, 0, 8},                         // middle of the intersection line
     {"planes_order2", 2, 3 + 2 * 3 + 4 + 8, {8, 8}, {2.25, 2.25}, 16, 2, 0, 8},  // and of its edges, sides, diagonals
     {"triple", 3, 7, {8, 8, 8}, {2.25, 2.25, 2.25}, 24, 6, 1, 8},                // eight octants
     {"triple_order2", 3, 7 + 6 * 3 + 12, {8, 8, 8}, {2.25, 2.25, 2.25}, 24, 6, 1, 8}};
@@ -73,7 +73,8 @@ Real volume(const GlobalMesh& mesh) {
   return sum;
 }
 
-/// The greatest distance of a node of order 2 from where straight cells have it, by the numbering of raise_order().
+/// Returns the largest distance of the nodes of order 2 from their positions in straight cells, numbered as in
+/// raise_order().
 Real misplacement(const GlobalMesh& mesh) {
   GlobalMesh straight;
   straight.shape = linear(mesh.shape);
@@ -113,7 +114,7 @@ TEST(Msh, CopiesAreasAndNodes) {
   }
 }
 
-/// A file of order 1 that is raised splits as the file of order 2 does.
+/// A file of order 1, raised to order 2, is split like the file of order 2.
 TEST(Msh, OrderRaised) {
   for (const auto& c : msh_cases) {
     const std::string name = c.name, suffix = "_order2";
@@ -174,7 +175,7 @@ TEST(Msh, NamesAndBoundaries) {
   EXPECT_DOUBLE_EQ(info.boundaries[0].measure, 4);
 }
 
-/// The text with x negated in all nodes.
+/// Returns the file with x negated for all nodes.
 std::string mirrored(const std::string& text) {
   std::istringstream in(text);
   std::string result, line, section;
@@ -250,7 +251,7 @@ TEST(Msh, GroupsWithoutNamesAndCellsWithoutGroups) {
 }
 
 TEST(Msh, NodesInMshOrder) {
-  // Documentation of gmsh: the edges and faces whose middle each node of the 27-node hexahedron is.
+  // Documentation of gmsh: the 27-node hexahedron has a node at the middle of each of these edges and faces.
   const auto mesh = read_msh(path_of("cubes_order2"), fractures(2));
   for (GlobalIndex cell = 0; cell < mesh.n_cells(); ++cell) {
     const auto x = [&](int k) { return point(mesh, mesh.cells[cell * 27 + k]) - point(mesh, mesh.cells[cell * 27]); };

@@ -17,7 +17,7 @@
 namespace sprekk::mesh::testing {
 namespace {
 
-/// The sum over all ranks.
+/// Returns the sum over all ranks. Collective.
 template <class T>
 std::vector<T> total(const Comm& comm, const std::vector<T>& here) {
   std::vector<T> all(here.size());
@@ -25,8 +25,8 @@ std::vector<T> total(const Comm& comm, const std::vector<T>& here) {
   return all;
 }
 
-/// Numbers the facets of a mesh, and checks that each is owned once and lies in one place on all ranks. Returns the
-/// places in the order of the numbers. Where sides are tied, of the cells of one of them.
+/// Numbers the facets of a mesh. Checks that each facet has one owner and equal coordinates on all ranks. Returns the
+/// centres by number. With tied sides, only owned cells and faces are compared. Collective.
 std::vector<Vector> places(const GlobalMesh& global, bool tied = false, int refinements = 0) {
   const auto comm = Tpetra::getDefaultComm();
   RCP<const Mesh> mesh = make_distributed(global, comm);
@@ -63,7 +63,8 @@ std::vector<Vector> places(const GlobalMesh& global, bool tied = false, int refi
   return result;
 }
 
-/// Two fractures that cross along the whole of one, of 2 and 4 steps; in 3D of two in the third direction.
+/// Returns a box with two fractures of 4 and 2 steps; the longer one crosses all of the shorter one. In 3D both extend
+/// two steps in the third direction.
 GlobalMesh crossing(const std::string& cell) {
   const bool flat = dim_of(cell) == 2;
   auto box = unit_steps(cell, flat ? std::vector<int>{4, 4} : std::vector<int>{4, 4, 2});
@@ -85,10 +86,10 @@ TEST(NumberFacets, OneBetweenCellsOneForAFractureFaceOneForEachRidge) {
   }
 }
 
-/// What is refined on the ranks has the facets of the mesh that is made at once.
+/// A mesh refined on the ranks has the facets of the fine box.
 TEST(NumberFacets, RefinedFracturesKeepTheirRidges) {
   for (const auto& cell : all_cells) {
-    if (cell == "tetrahedron") continue;  // which are not cut as a finer box is
+    if (cell == "tetrahedron") continue;  // tetrahedra: refinement does not give the cells of a finer box
     const bool flat = dim_of(cell) == 2;
     auto box = unit_steps(cell, flat ? std::vector<int>{8, 8} : std::vector<int>{8, 8, 4});
     box.fractures["a"] = flat ? fracture({0, 4}, {8, 4}) : fracture({0, 4, 0}, {8, 4, 4});
@@ -104,7 +105,8 @@ TEST(NumberFacets, RefinedFracturesKeepTheirRidges) {
   EXPECT_GT(places(crossing("tetrahedron"), false, 1).size(), 0u);
 }
 
-/// Ends on the boundary: in 2D both of the longer fracture, in 3D its sides, and top and bottom of both.
+/// Rims on the boundary: in 2D both ends of the longer fracture; in 3D its lateral edges, and top and bottom of both
+/// fractures.
 TEST(NumberFacets, FindsWhereFracturesEndOnTheBoundary) {
   for (const auto& cell : all_cells) {
     const auto mesh = with_facets(make_distributed(crossing(cell), Tpetra::getDefaultComm()));

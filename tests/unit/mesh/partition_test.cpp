@@ -47,7 +47,8 @@ TEST(Partition, UsesEveryPartWhereCellsAreHardlyMoreThanParts) {
     }
 }
 
-/// A square or cube of at least 500 cells with a crossing, a bundle of near parallels in one corner, or none.
+/// Returns a square or cube of at least 500 cells: with a crossing, with several almost parallel fractures in one
+/// corner, or without fractures.
 BoxMesh balanced_case(const std::string& cell, const std::string& kind) {
   const bool flat = dim_of(cell) == 2;
   const int n = flat ? 24 : 8;
@@ -91,7 +92,7 @@ TEST(Partition, BalancesCellsAndFractureFaces) {
 }
 
 TEST(Partition, ReportCounts) {
-  // Two rows of four, the fracture between them; parts 0 0 1 1 below and 0 0 0 2 above.
+  // Two rows of four cells with the fracture between them. Parts: 0 0 1 1 below, 0 0 0 2 above.
   auto box = unit_steps("quadrilateral", {4, 2});
   box.fractures["f"] = fracture({0, 1}, {4, 1});
   const auto mesh = make_box(box);
@@ -113,7 +114,7 @@ TEST(Partition, SeesTheFracture) {
   auto box = unit_steps("quadrilateral", {16, 2});
   box.fractures["f"] = fracture({0, 1}, {16, 1});
   const auto mesh = make_box(box);
-  const auto part = partition(mesh, 2);  // two edges are cut across, sixteen along the fracture
+  const auto part = partition(mesh, 2);  // two edges are cut across the fracture; sixteen would be cut along it
   for (const auto& face : mesh.fracture_faces) EXPECT_EQ(part[face.cell[minus]], part[face.cell[plus]]);
 }
 

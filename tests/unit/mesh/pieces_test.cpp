@@ -1,4 +1,4 @@
-// Pieces of rock between fractures, of whole meshes and of each rank's part.
+// Blocks of rock between fractures, of whole meshes and of each rank's part.
 #include <gtest/gtest.h>
 
 #include <Teuchos_CommHelpers.hpp>
@@ -11,7 +11,7 @@
 namespace sprekk::mesh::testing {
 namespace {
 
-/// A 4 x 4 [x 1] box cut at x and y; fractures run from side to side.
+/// Returns a 4 x 4 [x 1] box cut at the given x and y by fractures from side to side.
 BoxMesh cut(const std::string& cell, const std::vector<Real>& at_x, const std::vector<Real>& at_y) {
   const bool flat = dim_of(cell) == 2;
   auto box = unit_steps(cell, flat ? std::vector<int>{4, 4} : std::vector<int>{4, 4, 1});
@@ -34,7 +34,7 @@ TEST(Pieces, AsManyAsThereAreBetweenCuts) {
       const auto pieces = find_pieces(mesh);
       ASSERT_EQ(pieces.n(), static_cast<int>((at_x.size() + 1) * (at_y.size() + 1))) << cell;
       EXPECT_EQ(find_bodies(mesh).n(), 1);
-      // each is a rectangle: its cells have the volume of one, and are on the same side of all cuts
+      // Each piece is a rectangle: its cells have the total volume of one and are on the same side of all cuts.
       std::vector<Real> volume(pieces.n(), 0);
       std::vector<Vector> first(pieces.n(), Vector{-1});
       const auto column = [](const std::vector<Real>& cuts, Real x) {
@@ -60,7 +60,8 @@ TEST(Pieces, FracturesThatEndInRockSeparateNothing) {
   for (const auto& cell : all_cells) {
     auto box = crossed(cell);
     EXPECT_EQ(find_pieces(make_box(box)).n(), 1) << cell;
-    box.fractures["a"].lower_corner[0] = 0;  // from the west side to the foot of "c", which ends in the north
+    box.fractures["a"].lower_corner[0] = 0;  // from the west side to the lower end of "c", which ends at the north
+                                             // side
     EXPECT_EQ(find_pieces(make_box(box)).n(), 2) << cell;
   }
 }

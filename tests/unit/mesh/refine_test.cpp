@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 
 RCP<const Comm> alone() { return rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF)); }
 
-/// A mesh that one rank holds all of.
+/// Returns the global mesh of a mesh on one rank.
 GlobalMesh whole(const Mesh& mesh) {
   GlobalMesh result;
   result.shape = mesh.shape;
@@ -76,8 +76,8 @@ TEST(Subdivision, HasEqualVolumesAndPartsOfFaces) {
   }
 }
 
-/// Cells, nodes with all their copies, fractures and tips; of triangles, whose diagonals alternate in boxes, not the
-/// cells.
+/// Refinement gives the cells, nodes (with copies), fractures and tips of the box with twice the cells. Triangles
+/// differ, because their diagonals alternate in boxes.
 TEST(Refine, MakesTheBoxOfTwiceTheCells) {
   for (const auto& cell : all_cells)
     for (auto box : boxes(cell))
@@ -90,7 +90,7 @@ TEST(Refine, MakesTheBoxOfTwiceTheCells) {
       }
 }
 
-/// With the tips that are marked.
+/// The comparison includes the marked tips.
 TEST(Refine, IsTheSameOnAnyRanks) {
   const auto comm = Tpetra::getDefaultComm();
   for (const auto& cell : all_cells)
@@ -115,7 +115,7 @@ TEST(Refine, IsTheSameOnAnyRanks) {
     }
 }
 
-/// Fractures that meet in many ways: nodes are added before and after the mesh is split.
+/// Fractures with many kinds of intersections: nodes of order 2 are added before and after the split.
 TEST(RaiseOrder, AfterTheSplitGivesTheSameNodes) {
   const auto comm = Tpetra::getDefaultComm();
   for (const auto& [name, n] :
@@ -150,7 +150,7 @@ Real smallest_jacobian(const GlobalMesh& mesh) {
   return result;
 }
 
-/// All descendants of a tetrahedron have three shapes at most, which the first step makes.
+/// All descendants of a tetrahedron have at most three shapes, which occur after the first step.
 TEST(Refine, KeepsShapesOfTetrahedra) {
   for (int seed = 0; seed < 5; ++seed) {
     auto mesh = make_box(unit_steps("tetrahedron", {1, 1, 1}));

@@ -8,7 +8,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The number of nodes that the fractures add.
+/// Returns the number of nodes that the fractures add.
 GlobalIndex copies(const BoxMesh& box) {
   auto whole = box;
   whole.fractures.clear();
@@ -21,8 +21,7 @@ struct SplitCase {
   int copies, faces;  ///< in 2D; three times the copies and twice the faces when extruded
 };
 
-// In a 6 x 4 box: copies counted by hand, one per tip-free node, two more at a T, three more at a crossing of
-// interiors.
+// 6 x 4 box. Copies are counted by hand: one per node that is not a tip, two more at a T, three more at a crossing.
 const std::vector<SplitCase> split_cases{{"immersed", {{{{1, 2}, {5, 2}}}}, 3, 4},
                                          {"one face", {{{{2, 2}, {3, 2}}}}, 0, 1},
                                          {"to the boundary", {{{{0, 2}, {4, 2}}}}, 4, 4},
@@ -60,7 +59,7 @@ TEST(Split, CopiesOfNodesIn3D) {
     EXPECT_EQ(copies(box), 30) << cell;
     box.fractures["b"] = fracture({0, 2, 0}, {5, 2, 4});  // crosses along 6 nodes
     EXPECT_EQ(copies(box), 2 * 30 + 6) << cell;
-    box.fractures["c"] = fracture({2, 0, 0}, {2, 4, 4});  // 8 octants meet in one node, 4 copies on six half lines
+    box.fractures["c"] = fracture({2, 0, 0}, {2, 4, 4});  // 8 octants meet in one node; 4 copies along six half lines
     const int lines = 5 + 4 + 4, planes = 5 * 4 + 5 * 4 + 4 * 4;
     EXPECT_EQ(copies(box), 7 + 3 * lines + planes) << cell;
   }
@@ -112,7 +111,7 @@ TEST(Orientation, RuleIn2D) {
     expect_equal(normal_of(box), {0, 1, 0});
     f.swap_sides = false;
     expect_equal(normal_of(box), {0, -1, 0});
-    box.rotation = 90;  // the reference turns with the box
+    box.rotation = 90;  // the reference normal is rotated with the box
     expect_equal(normal_of(box), {1, 0, 0});
     f.reference_normal = std::vector<Real>{0, 1};
     expect_equal(normal_of(box), {-1, 0, 0});
@@ -143,7 +142,7 @@ TEST(Orientation, RuleIn3D) {
   }
 }
 
-/// An unsplit box with names for fractures that mark() is to select.
+/// Returns an unsplit box with names of fractures, for mark().
 GlobalMesh plain(const std::string& cell, std::vector<int> n, std::vector<std::string> fractures) {
   auto mesh = make_box(unit_steps(cell, std::move(n)));
   mesh.fracture_names = std::move(fractures);
@@ -169,8 +168,7 @@ TEST(Orientation, ClosedFracturePointsOutward) {
 }
 
 TEST(Orientation, StaircaseIsConsistent) {
-  // Up three steps: (0,1)-(1,1)-(1,2)-(2,2)-(2,3)-(3,3). Above it on the left is one side, below on the right the
-  // other.
+  // Stairs with three steps: (0,1)-(1,1)-(1,2)-(2,2)-(2,3)-(3,3). One side is above left, the other below right.
   const auto mesh = plain("quadrilateral", {3, 4}, {"stairs"});
   const auto stairs = split(mesh, mark(mesh, 0, [](const Vector& x) { return x[1] - x[0] == 0.5; }));
   ASSERT_EQ(stairs.fracture_faces.size(), 5u);
@@ -192,7 +190,7 @@ TEST(Orientation, PiecesOfOneFractureEachObeyTheRule) {
 }
 
 TEST(Orientation, OneSidedSurfaceIsAnError) {
-  // The strip of triangles (i, i+1, i+2) mod 5, each the base of a tetrahedron.
+  // Moebius strip of the triangles (i, i+1, i+2) mod 5; each is the base of a tetrahedron.
   GlobalMesh mesh;
   mesh.shape = Shape::tetrahedron;
   mesh.fracture_names = {"strip"};

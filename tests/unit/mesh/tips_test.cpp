@@ -13,7 +13,7 @@
 namespace sprekk::mesh::testing {
 namespace {
 
-/// The places of the tips of a mesh, each once, sorted.
+/// Returns the coordinates of the tips of a mesh, sorted, without duplicates.
 std::vector<Vector> places_of_tips(const GlobalMesh& mesh) {
   std::vector<Vector> result;
   const auto is_tip = tip_nodes(mesh);
@@ -25,7 +25,7 @@ std::vector<Vector> places_of_tips(const GlobalMesh& mesh) {
   return result;
 }
 
-/// A fracture of a 6 x 4 (x 2) box, along the third direction through it.
+/// Returns a fracture of a 6 x 4 (x 2) box, in 3D over the full third direction.
 BoxMesh::Fracture line(bool flat, std::array<Real, 2> a, std::array<Real, 2> b) {
   return flat ? fracture({a[0], a[1]}, {b[0], b[1]}) : fracture({a[0], a[1], 0}, {b[0], b[1], 2});
 }
@@ -62,7 +62,7 @@ TEST(Tips, OfASquareAreItsRim) {
   }
 }
 
-/// Between two fractures a cell apart there are faces with tips only.
+/// The cells between two fractures at a distance of one cell have faces whose nodes are all tips.
 TEST(Tips, OnPartsAsOnTheWhole) {
   const auto comm = Tpetra::getDefaultComm();
   for (const auto& cell : all_cells) {

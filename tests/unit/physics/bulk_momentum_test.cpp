@@ -10,7 +10,7 @@
 namespace sprekk::physics::testing {
 namespace {
 
-/// A box [0, 3] x [0, 2] [x [0, 2]] without fractures, turned by 25 degrees, of soft rock.
+/// Returns a box [0, 3] x [0, 2] [x [0, 2]] of soft rock without fractures, turned by `rotation` (degrees).
 mesh::BoxMesh plain_box(const std::string& cell, Real rotation) {
   auto box = mesh::testing::unit_steps(
       cell, mesh::testing::dim_of(cell) == 2 ? std::vector<int>{3, 2} : std::vector<int>{3, 2, 2});
@@ -18,7 +18,7 @@ mesh::BoxMesh plain_box(const std::string& cell, Real rotation) {
   return box;
 }
 
-/// A displacement gradient that is no multiple of anything.
+/// General displacement gradient.
 constexpr Real H[3][3] = {{0.3, -0.2, 0.5}, {0.7, -0.4, 0.1}, {-0.6, 0.25, 0.15}};
 
 Real linear(const Real* x, int i, int dim) {
@@ -27,7 +27,7 @@ Real linear(const Real* x, int i, int dim) {
   return u;
 }
 
-/// 2 G eps + lambda tr(eps) I of H, [i][j], with the plane-strain zz component in 2D.
+/// Returns 2 G eps + lambda tr(eps) I of H, [i][j], with the plane-strain zz component in 2D.
 std::array<std::array<Real, 3>, 3> stress(const laws::Elasticity& law, int dim) {
   std::array<std::array<Real, 3>, 3> sigma{};
   Real trace = 0;
@@ -50,7 +50,8 @@ TEST(BulkMomentum, RigidMotionsAreFree) {
       rock.system->raw_residual(x, r);
       EXPECT_LE(r[0]->normInf(), 1e-13) << cell;
     }
-    const auto modes = rock.system->blocks()[0].near_null_space.make();  // what multigrid is told: rigid motions, too
+    const auto modes = rock.system->blocks()[0].near_null_space.make();  // near-null space of multigrid: contains
+                                                                         // rigid rotations
     EXPECT_EQ(static_cast<int>(modes->getNumVectors()), dim + n_rotations);
     for (int m = 0; m < dim + n_rotations; ++m) {
       Tpetra::deep_copy(*x[0], *modes->getVector(m));
@@ -107,7 +108,7 @@ TEST(BulkMomentum, IsSymmetric) {
   }
 }
 
-/// The residual is integrated cell by cell, the Jacobian of cells that are affine maps of the reference cell is not.
+/// The Jacobian of cells that are affine images of the reference cell is not integrated cell by cell; the residual is.
 TEST(BulkMomentum, JacobianIsTheDerivativeOfTheResidual) {
   for (const auto& cell : all_cells)
     for (int order : {1, 2})
@@ -132,7 +133,7 @@ TEST(BulkMomentum, JacobianIsTheDerivativeOfTheResidual) {
       }
 }
 
-/// sum over all nodes of the forces' component i times f(node), of minus the residual at rest.
+/// Returns the sum over all nodes of (component i of the force) * f(node); forces are minus the residual at rest.
 template <class F>
 Real virtual_work(const Rock& rock, int i, const F& f) {
   auto x = rock.system->initial(), r = fields::create_like(x);

@@ -1,4 +1,4 @@
-// History, outputs and measures of the elastic-plastic jump, and that no partition changes an answer.
+// History, outputs and measures of the elastic-plastic jump, and independence of the partition.
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ JointParameters full_joint() {
   return joint;
 }
 
-/// A cut box whose upper part is shifted against the lower one, so that every face has the same jump `w` (global).
+/// Cut box with an upper part shifted against the lower one; every face has the same jump `w` (global frame).
 struct ShiftedRock {
   Rock rock;
   fields::BlockVector x;
@@ -29,10 +29,10 @@ struct ShiftedRock {
   explicit ShiftedRock(const std::string& cell)
       : rock(make_rock(cut_box(cell, false), full_joint())), x(rock.system->initial()) {}
 
-  /// jump and traction in the frame of the faces.
+  /// Sets jump and traction of all faces, in the frame of the faces.
   void set(std::array<Real, 3> jump, std::array<Real, 3> traction) {
     const int dim = rock.dim();
-    const auto& face = rock.global.fracture_faces[0];  // a plane has one frame
+    const auto& face = rock.global.fracture_faces[0];  // the faces of a plane have one frame
     const auto frame =
         mesh::face_frame(mesh::area_vector(rock.global, face.cell[mesh::minus], face.local_face[mesh::minus]), dim);
     x = rock.system->initial();
@@ -48,7 +48,7 @@ struct ShiftedRock {
       for (int i = 0; i < dim; ++i) x[2]->replaceLocalValue(f * dim + i, traction[i]);
   }
 
-  /// The plastic jump that the next step starts from: R_t of a closed face vanishes there and nowhere else.
+  /// Checks the plastic jump at the beginning of the next step: R_t of a closed face vanishes only there.
   void expect_history(std::array<Real, 2> p_old) {
     const int dim = rock.dim();
     set({0, p_old[0], p_old[1]}, {-50, 0, 0});
@@ -68,7 +68,7 @@ TEST(ElasticPlasticJump, HistoryMovesByState) {
     s.set({5, 0.4, -0.3 * third}, {0, 0, 0});  // open: all of w_t is plastic
     s.rock.system->commit(s.x);
     s.expect_history({0.4, -0.3 * third});
-    s.set({0, 0.7, 0.1 * third}, {-50, 0.3, 0});  // sticks: stays
+    s.set({0, 0.7, 0.1 * third}, {-50, 0.3, 0});  // sticks: unchanged
     s.rock.system->commit(s.x);
     s.expect_history({0.4, -0.3 * third});
     s.set({0, 3, 2 * third}, {-0.5, 0.2, -0.1 * third});  // slips: w_t - lambda_t/K_t
@@ -84,7 +84,7 @@ TEST(ElasticPlasticJump, OutputsSplitTheJump) {
     const int dim = s.rock.dim();
     const Real third = dim == 3;
     s.set({-0.04, 3, 2 * third}, {-0.5, 0.2, -0.1 * third});
-    s.rock.system->commit(s.x);  // outputs show committed states
+    s.rock.system->commit(s.x);  // outputs are of committed states
     const Real closure = -0.1 * 0.5 / (0.5 + 0.5);
     const std::vector<std::pair<std::string, std::array<Real, 3>>> expected = {
         {"jump", {-0.04, 3, 2}},
@@ -114,8 +114,7 @@ TEST(ElasticPlasticJump, OutputsSplitTheJump) {
   }
 }
 
-/// A rigid open body that drifts: no residual. A jump that is off by e in a closed face is off by e in the split's
-/// measure.
+/// Translation of a rigid open body causes no residual. An error e of the jump in a closed face gives the measure e.
 TEST(ElasticPlasticJump, MeasureSeesTheSplitInLengths) {
   ShiftedRock s("triangle");
   auto r = fields::create_like(s.x);
@@ -137,7 +136,8 @@ TEST(ElasticPlasticJump, MeasureSeesTheSplitInLengths) {
   EXPECT_EQ(measure(), 0);
 }
 
-/// A rigid motion of all of the rock by 1e8 leaves 1e-8 of a jump to rounding, which is no residual, and no more.
+/// Translation of all rock by 1e8 leaves a rounding error of 1e-8 in the jump. This error is not counted as a
+/// residual.
 TEST(ElasticPlasticJump, MeasuresDoNotSeeTheRoundingOfFarMotions) {
   ShiftedRock s("triangle");
   auto r = fields::create_like(s.x);
@@ -157,8 +157,8 @@ TEST(ElasticPlasticJump, MeasuresDoNotSeeTheRoundingOfFarMotions) {
   }
 }
 
-/// No force where it is tied; an open face that has moved by v bears stiffness c v. The derivative is that of the
-/// residual, whatever the state.
+/// At the anchor of the tether the residual is zero. On an open face, the residual is proportional to the displacement
+/// from the anchor. The Jacobian is the derivative of the residual in each contact state.
 TEST(ElasticPlasticJump, TetherPullsBack) {
   for (const auto& cell : all_cells) {
     ShiftedRock s(cell);
@@ -195,7 +195,7 @@ TEST(ElasticPlasticJump, TetherPullsBack) {
   }
 }
 
-/// A joint that stretches along its plane, without a plastic jump, does not feel it.
+/// A tether does not resist an elastic tangential jump, without plastic jump.
 TEST(ElasticPlasticJump, TetherLeavesTheElasticJumpAlone) {
   for (const auto& cell : all_cells) {
     ShiftedRock s(cell);
@@ -239,7 +239,7 @@ TEST(ElasticPlasticJump, HashTellsTheStatesOfTheFaces) {
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(hashes[i], hashes[j]);
 }
 
-/// Residual, Jacobian, measures, merit and hash on all ranks are those of one rank that holds everything.
+/// Residual, Jacobian, measures, merit and hash on all ranks equal the values on one rank.
 TEST(FracturedRock, IsTheSameForEveryPartition) {
   const auto world = Tpetra::getDefaultComm();
   for (const auto& cell : all_cells) {

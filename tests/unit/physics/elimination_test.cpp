@@ -1,4 +1,4 @@
-// What remains after the bubbles, and after bubbles and tractions, are eliminated: the closed results for one face.
+// Matrices after elimination of bubbles, and of bubbles and tractions, compared with closed forms for one face.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,16 +10,16 @@ namespace {
 
 using mesh::operator*;
 
-/// All blocks of the Jacobian at x, as dense matrices: displacement u, side bubble b, traction l.
+/// Blocks of the Jacobian at x as dense matrices: displacement u, side bubble b, traction l.
 struct Blocks {
   Dense uu, ub, ul, bu, bb, bl, lu, lb, ll;
 
   Blocks(const Rock& rock, const fields::BlockVector& x) : Blocks((rock.system->jacobian(x), rock)) {}
 
-  /// A' = A - A_ub A_bb^-1 A_bu.
+  /// Returns A' = A - A_ub A_bb^-1 A_bu.
   Dense condensed() const { return uu - ub * test::solve(bb, bu); }
 
-  /// A - [A_ub A_ul] [A_bb A_bl; A_lb A_ll]^-1 [A_bu; A_lu].
+  /// Returns A - [A_ub A_ul] [A_bb A_bl; A_lb A_ll]^-1 [A_bu; A_lu].
   Dense reduced() const {
     const int n = uu.n_rows, b = bb.n_rows, l = ll.n_rows;
     Dense inner(b + l, b + l), right(b + l, n), left(n, b + l);
@@ -47,7 +47,7 @@ struct Blocks {
         ll(rock.block(2, 2)) {}
 };
 
-/// A fracture face as the whole problem knows it.
+/// Fracture face of the global mesh.
 struct Face {
   GlobalIndex id;
   mesh::GlobalMesh::FractureFace sides;
@@ -61,19 +61,19 @@ struct Face {
   }
 };
 
-/// Gradients of the linear functions that are 1 at one corner of a simplex and 0 at the others, and its volume.
+/// Gradients of the linear functions that are 1 at one corner of a simplex and 0 at the others; volume of the simplex.
 struct Simplex {
   std::vector<mesh::Vector> g;
   Real volume;
 
   Simplex(const mesh::GlobalMesh& mesh, GlobalIndex cell) : volume(mesh::testing::cell_volume(mesh, cell)) {
     const int dim = mesh.dim();
-    for (int a = 0; a <= dim; ++a)  // minus the outward area of the opposite face over dim |cell|
+    for (int a = 0; a <= dim; ++a)  // minus the outward area vector of the opposite face, over dim |cell|
       g.push_back((-1 / (dim * volume)) * mesh::area_vector(mesh, cell, dim == 2 ? (a + 1) % 3 : a));
   }
 };
 
-/// The integral of grad b x grad b over the cell for the bubble of a face.
+/// Returns the integral of grad b x grad b over the cell, for the bubble b of a face.
 Dense bubble_gradients(const mesh::GlobalMesh& mesh, GlobalIndex cell, int local_face) {
   const int dim = mesh.dim();
   Dense M(dim, dim);
@@ -89,7 +89,7 @@ Dense bubble_gradients(const mesh::GlobalMesh& mesh, GlobalIndex cell, int local
       }
     return M;
   }
-  // the unit square or cube: product of 4 s (1 - s) along the face times 1 - distance
+  // Unit square or cube: product of 4 s (1 - s) along the face, times (1 - distance).
   const auto area = mesh::area_vector(mesh, cell, local_face);
   const mesh::Vector n = (1 / mesh::norm(area)) * area;
   const Real along = dim == 2 ? 16 / 9.0 : 16 / 9.0 * 8 / 15, across = dim == 2 ? 8 / 15.0 : 64 / 225.0;
@@ -98,7 +98,8 @@ Dense bubble_gradients(const mesh::GlobalMesh& mesh, GlobalIndex cell, int local
   return M;
 }
 
-/// alpha of a side: the number of fracture faces of its cell times the largest eigenvalue of the bubble's stiffness.
+/// Returns alpha of a side: number of fracture faces of its cell times the largest eigenvalue of the bubble's
+/// stiffness.
 Real alpha(const Rock& rock, const Face& face, int side) {
   const GlobalIndex cell = face.sides.cell[side];
   const auto& law = rock.elasticity[rock.global.cell_region[cell]];
@@ -122,7 +123,7 @@ Real gamma(const Rock& rock, const Face& face) {
   return c * c * face.area * (1 / alpha(rock, face, mesh::plus) + 1 / alpha(rock, face, mesh::minus));
 }
 
-/// Rows of a face in the frame (n, t1[, t2]).
+/// Returns the frame (n, t1[, t2]) of a face as rows, equal on every rank. Collective.
 Dense frame_of(const Rock& rock, const Face& face) {
   Dense R(rock.dim(), rock.dim()), here = R;
   for (LocalIndex f = 0; f < rock.mesh->n_owned_fracture_faces; ++f)
@@ -134,7 +135,7 @@ Dense frame_of(const Rock& rock, const Face& face) {
   return R;
 }
 
-/// W_f = mean R [[.]] - c_b R (A_bb+^-1 A_bu+ - A_bb-^-1 A_bu-), [dim, displacement unknowns]; A_bb = alpha I.
+/// Returns W_f = mean R [[.]] - c_b R (A_bb+^-1 A_bu+ - A_bb-^-1 A_bu-), [dim, displacement unknowns]; A_bb = alpha I.
 Dense jump_operator(const Rock& rock, const Face& face, const Blocks& blocks) {
   const int dim = rock.dim(), m = mesh::n_face_nodes(rock.global.shape);
   Dense W(dim, blocks.uu.n_rows);
@@ -159,7 +160,7 @@ JointParameters simple_joint(Real compliance, Real maximum_closure) {
   return joint;
 }
 
-/// Every face in one state: displacement at rest, tractions in the face's frame.
+/// Returns a state at rest with equal tractions on all faces, in the frame of the faces.
 fields::BlockVector with_traction(const Rock& rock, std::array<Real, 3> traction) {
   auto x = rock.system->initial();
   for (LocalIndex f = 0; f < rock.mesh->n_owned_fracture_faces; ++f)
@@ -167,7 +168,7 @@ fields::BlockVector with_traction(const Rock& rock, std::array<Real, 3> traction
   return x;
 }
 
-/// Commits x, because the outputs show committed states.
+/// Commits x, because outputs are of committed states, and checks the state of all faces.
 void expect_state(const Rock& rock, const fields::BlockVector& x, laws::ContactState state) {
   rock.system->commit(x);
   for (Real visited : rock.output(x, "state")) EXPECT_EQ(visited, static_cast<Real>(state));
@@ -227,7 +228,7 @@ TEST(Elimination, BubblesTestTheBodyForce) {
     auto x = rock.system->initial(), r = fields::create_like(x);
     const int dim = rock.dim();
     const Real mean =
-        on_simplices(rock.global) ? (dim == 2 ? 1 / 3.0 : 0.225) : (dim == 2 ? 1 / 3.0 : 2 / 9.0);  // of b
+        on_simplices(rock.global) ? (dim == 2 ? 1 / 3.0 : 0.225) : (dim == 2 ? 1 / 3.0 : 2 / 9.0);  // mean of b
     for (Real t : {1.0, 3.0}) {
       rock.system->set_time(t, 1);
       rock.system->raw_residual(x, r);
@@ -270,7 +271,7 @@ TEST(Elimination, MeanJumpIsThatOfTheCondensedBubbles) {
   }
 }
 
-/// Compares A - (all of the faces' unknowns) with A' + sum |f| W^T C W.
+/// Compares A without the unknowns of the faces with A' + sum |f| W^T C W.
 template <class Stiffness>
 void expect_reduced(const Rock& rock, const fields::BlockVector& x, const Stiffness& C) {
   const Blocks blocks(rock, x);
@@ -310,9 +311,9 @@ TEST(Elimination, StickingFacesAreSprings) {
       }
 }
 
-/// C = [[k_n, 0], [-mu k_n d, k_e (I - d d^T)]], k_e = (b/|z|) c_t / (1 - (b/|z|)(1 - c_t (gamma + 1/K_t))), with the
-/// shear z = lambda_t - c_t lambda_t/K_t of the state and its direction d; c_t is in series with K_t and
-/// the parameter `augmentation` times E of the softer rock over the length of the fracture.
+/// C = [[k_n, 0], [-mu k_n d, k_e (I - d d^T)]], k_e = (b/|z|) c_t / (1 - (b/|z|)(1 - c_t (gamma + 1/K_t))).
+/// Shear z = lambda_t - c_t lambda_t/K_t with direction d. c_t is K_t in series with the parameter `augmentation`
+/// times E of the softer rock over the length of the fracture.
 TEST(Elimination, SlippingFacesFollowTheNormalForce) {
   for (const auto& cell : all_cells)
     for (Real compliance : {0.0, 0.5}) {
@@ -342,7 +343,7 @@ TEST(Elimination, SlippingFacesFollowTheNormalForce) {
     }
 }
 
-/// A' is symmetric, positive semi-definite, and its null space holds the rigid motions of every block and nothing else.
+/// A' is symmetric and positive semi-definite. Its null space consists of the rigid motions of all blocks.
 TEST(Elimination, CondensedBulkHasRigidMotionsOfEveryBlockAndNoOtherNullSpace) {
   for (const auto& cell : all_cells)
     for (bool crossing : {false, true}) {
