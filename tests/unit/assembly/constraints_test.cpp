@@ -47,7 +47,7 @@ struct ConstrainedProblem {
     return {*mesh, layout, conditions};
   }
 
-  /// Mask and value of every unknown of the whole problem, where free the value is 0.
+  /// Returns mask and value of every global unknown; the value is 0 where the unknown is free. Collective.
   std::array<test::Dense, 2> gather(const Constraints& c) const {
     fields::Vector mask(layout.owned()), values(layout.owned());
     for (LocalIndex i = 0; i < layout.n_owned(); ++i) {
@@ -57,7 +57,7 @@ struct ConstrainedProblem {
     return {test::gather(mask), test::gather(values)};
   }
 
-  /// The error of evaluate(), on every rank.
+  /// Returns the message of the Error of evaluate(), on every rank. Collective.
   std::string error_of(Constraints constraints, Real t) const {
     return mesh::testing::error_of([&] { base::collectively(*mesh->comm, [&] { constraints.evaluate(t); }); });
   }
@@ -71,7 +71,7 @@ TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
         {p.on("lid", "north", {text("2*x+t"), std::nullopt}), p.on("wall", "west", {std::nullopt, text("y*y")})});
     constraints.evaluate(0.5);
     const auto [mask, values] = p.gather(constraints);
-    int copies = 0;  // of the node where fracture "c" ends on the north side
+    int copies = 0;  // copies of the node where fracture "c" ends on the north side
     for (int node = 0; node < static_cast<int>(p.global.n_nodes()); ++node) {
       const Real x = p.global.coordinates[node * dim], y = p.global.coordinates[node * dim + 1];
       const bool held[] = {y == 4, x == 0, false};
@@ -93,7 +93,8 @@ TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
   }
 }
 
-/// Fracture "c" ends on the north side at x = 4. Values that jump there differ by sides, all others are those at nodes.
+/// Fracture "c" ends on the north side at x = 4. Values with a jump at x = 4 differ between its sides; other values
+/// are equal to the values at the nodes.
 TEST(Constraints, GiveEachSideOfAFractureItsLimit) {
   for (const auto& cell : mesh::testing::all_cells)
     for (const int order : {1, 2}) {
@@ -110,7 +111,7 @@ TEST(Constraints, GiveEachSideOfAFractureItsLimit) {
         values[0] = text(formula);
         Constraints constraints(*mesh, layout, {{"lid", "displacement", north, values}});
         constraints.evaluate(0.5);
-        std::vector<std::array<Real, 3>> found;  // x, the mean x of cells of the node's side, value
+        std::vector<std::array<Real, 3>> found;  // x, the mean x of the cells on the node's side, value
         const int n = mesh->nodes_per_cell();
         for (const auto& entry : constraints.entries()) {
           Real side = 0;
@@ -134,8 +135,8 @@ TEST(Constraints, GiveEachSideOfAFractureItsLimit) {
     }
 }
 
-/// Faces have edges of 1, so a function with second derivative g'' along one of them exceeds its linear interpolant by
-/// -g''/12 in the mean, on triangles, too; where two boundaries meet, by what lies between theirs.
+/// Faces have edges of length 1. A function with second derivative g'' along an edge exceeds its linear interpolant by
+/// -g''/12 on average, also on triangles. At a node of two boundaries, the error lies between the errors on both.
 TEST(Constraints, MissCurvedValuesBetweenNodes) {
   for (const auto& cell : mesh::testing::all_cells) {
     const ConstrainedProblem p(cell);
@@ -158,7 +159,7 @@ TEST(Constraints, MissCurvedValuesBetweenNodes) {
   }
 }
 
-/// Values at nodes, but none in the middle of one face.
+/// The values exist at the nodes, but not in the middle of one face.
 TEST(Constraints, HaveNoValueBetweenNodesOnAnyRank) {
   const ConstrainedProblem p("quadrilateral");
   const auto conditions = {p.on("lid", "north", {text("sqrt(abs(x-1.5)-0.45)")})};
@@ -166,7 +167,8 @@ TEST(Constraints, HaveNoValueBetweenNodesOnAnyRank) {
   EXPECT_THROW(prescribed_error(*p.mesh, p.layout, conditions, 0), Error);
 }
 
-/// Order 2 follows a quadratic function, and misses one with fourth derivative g4 by -g4/2880 in the mean of an edge.
+/// Order 2 reproduces a quadratic function. A function with fourth derivative g4 has the mean error -g4/2880 on an
+/// edge.
 TEST(Constraints, MissLessAtOrderTwo) {
   for (const auto& [formula, missed] : {std::pair{"3*y*y", 0.0}, {"y^4", -24.0 / 2880}}) {
     auto box = crossed("quadrilateral");

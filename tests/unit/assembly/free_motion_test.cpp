@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-/// A condition that holds the components in `held`, such as "xz".
+/// Returns a condition that constrains the components in `held`, e.g. "xz".
 DirichletCondition hold(const GlobalMesh& mesh, const std::string& boundary, const std::string& held, int region = -1) {
   const auto found = std::find(mesh.boundary_names.begin(), mesh.boundary_names.end(), boundary);
   DirichletCondition condition{boundary, "displacement", static_cast<int>(found - mesh.boundary_names.begin()), {}};
@@ -37,7 +37,7 @@ std::vector<std::string> texts(const GlobalMesh& mesh, const std::vector<Dirichl
   return result;
 }
 
-/// Both meshes in one, the second moved along x.
+/// Returns the union of both meshes, the second displaced by `shift` in x.
 GlobalMesh both(GlobalMesh mesh, const GlobalMesh& other, Real shift) {
   const GlobalIndex n_nodes = mesh.n_nodes(), n_cells = mesh.n_cells();
   for (std::size_t k = 0; k < other.coordinates.size(); ++k)
@@ -58,7 +58,8 @@ GlobalMesh both(GlobalMesh mesh, const GlobalMesh& other, Real shift) {
   return mesh;
 }
 
-/// The largest displacement of a held component or difference between tied nodes, over that of the body.
+/// Checks that free motions satisfy the conditions: the largest displacement of a constrained component, or difference
+/// between tied nodes, relative to the displacement of the body.
 void expect_compatible(const GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions) {
   const auto at = [](const FreeMotion& m, const Vector& x) {
     const Vector d{x[0] - m.centre[0], x[1] - m.centre[1], x[2] - m.centre[2]};
@@ -128,7 +129,7 @@ TEST(FreeMotion, Rollers) {
   }
 }
 
-/// A roller works along global axes, whichever way its side runs.
+/// A roller constrains global components, for any orientation of its side.
 TEST(FreeMotion, ObliqueRollers) {
   auto box = unit_steps("quadrilateral", {2, 2});
   box.rotation = 30;
@@ -139,7 +140,7 @@ TEST(FreeMotion, ObliqueRollers) {
   EXPECT_THAT(texts(mesh, two), ElementsAre("can move along (1, 0)"));
 }
 
-/// Tetrahedra that touch in an edge, and in a corner: what is held by the other one alone can turn.
+/// Tetrahedra with a common edge, or a common corner: a body supported only by the other one can rotate.
 TEST(FreeMotion, Hinges) {
   GlobalMesh hinge;
   hinge.shape = mesh::Shape::tetrahedron;
@@ -160,7 +161,8 @@ TEST(FreeMotion, Hinges) {
                                    "can rotate about the axis (0, 0, 1) through (0, 0, 1.5)"));
 }
 
-/// A triangle whose lower nodes, (0, 0) and (1, 0), are held in x: it can turn as long as these go up and down.
+/// A triangle whose lower nodes, (0, 0) and (1, 0), are fixed in x: it can rotate, because these nodes move
+/// vertically.
 TEST(FreeMotion, RotationAboutAPoint) {
   GlobalMesh mesh;
   mesh.shape = mesh::Shape::triangle;
@@ -195,7 +197,7 @@ TEST(FreeMotion, DisconnectedBodies) {
   }
 }
 
-/// Whatever hangs on contact alone is accepted: half a box above a fracture.
+/// Rock held only by contact is accepted: the half of a box above a fracture.
 TEST(FreeMotion, ContactHolds) {
   for (const auto& cell : all_cells) {
     auto box = unit_steps(cell, dim_of(cell) == 2 ? std::vector<int>{2, 2} : std::vector<int>{2, 2, 1});
@@ -232,7 +234,7 @@ TEST(FreeMotion, PeriodicSides) {
   }
 }
 
-/// Tiny and huge bodies, far from the origin, and a support that is small next to the body.
+/// Very small and very large bodies, far from the origin, and a support that is small compared with the body.
 TEST(FreeMotion, DoesNotDependOnUnitsOrOrigin) {
   for (Real size : {1e-6, 1e6})
     for (Real shift : {0.0, 1e4}) {
@@ -250,7 +252,7 @@ TEST(FreeMotion, DoesNotDependOnUnitsOrOrigin) {
           std::find(mesh.boundary_names.begin(), mesh.boundary_names.end(), "bottom") - mesh.boundary_names.begin();
       const auto one =
           *std::find_if(faces.begin(), faces.end(), [&](const auto& face) { return face.boundary == bottom; });
-      faces = {one};  // a fortieth of the size
+      faces = {one};  // one fortieth of the size
       EXPECT_EQ(free_motions(mesh, {hold(mesh, "bottom", "xyz")}).size(), 0u);
     }
 }

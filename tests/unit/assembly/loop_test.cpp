@@ -15,7 +15,7 @@ using fields::Entity;
 using fields::Layout;
 using mesh::testing::crossed;
 
-/// A mesh with its layouts: displacement (nodes), side bubble and traction (faces).
+/// Mesh with the layouts of displacement (nodes), side bubble and traction (faces).
 struct LoopProblem {
   mesh::GlobalMesh global;
   RCP<const mesh::Mesh> mesh;
@@ -30,13 +30,13 @@ struct LoopProblem {
         beta({"side bubble", Entity::fracture_face, 2 * dim, "m"}, *mesh),
         lambda({"traction", Entity::fracture_face, dim, "Pa"}, *mesh) {}
 
-  /// Global numbers of the nodes of a cell.
+  /// Returns the global numbers of the nodes of a cell.
   std::vector<GlobalIndex> nodes(GlobalIndex cell) const {
     const int n = mesh::n_nodes(global.shape);
     return {global.cells.begin() + cell * n, global.cells.begin() + (cell + 1) * n};
   }
 
-  /// Global numbers of the nodes of a face of a cell.
+  /// Returns the global numbers of the nodes of a face of a cell.
   std::vector<GlobalIndex> nodes(GlobalIndex cell, int local_face) const {
     std::vector<GlobalIndex> result;
     for (int k = 0; k < mesh::n_face_nodes(global.shape); ++k)
@@ -45,7 +45,7 @@ struct LoopProblem {
   }
 };
 
-/// Global numbers of the first unknowns of an entity's groups.
+/// Returns the global numbers of the first unknown of each group of an entity.
 std::vector<GlobalIndex> groups(const Stencil& stencil, const Layout& layout, int entity) {
   std::vector<GlobalIndex> result;
   for (std::size_t g = 0; g < stencil.first.extent(1); ++g)
@@ -114,7 +114,8 @@ TEST(Stencil, OwnedFractureFacesTouchBothSides) {
       EXPECT_TRUE(std::is_permutation(touched.begin() + n, touched.end(), plus.begin()));
       for (int k = 0; k < n; ++k)
         for (int i = 0; i < p.dim; ++i)
-          EXPECT_EQ(p.global.coordinates[touched[k] + i], p.global.coordinates[touched[n + k] + i]);  // they coincide
+          EXPECT_EQ(p.global.coordinates[touched[k] + i], p.global.coordinates[touched[n + k] + i]);  // both sides
+                                                                                                      // coincide
       EXPECT_EQ(groups(beta, p.beta, f), std::vector<GlobalIndex>{p.mesh->fracture_faces[f].id * 2 * p.dim});
     }
   }
@@ -199,7 +200,7 @@ TEST(FindPositions, RefuseEntriesThatTheMatrixLacks) {
                            {{make_stencil(*p.mesh, Loop::fracture_sides, p.beta),
                              make_stencil(*p.mesh, Loop::fracture_sides, p.u)},
                             {make_stencil(*p.mesh, Loop::fracture_faces, p.beta), sides}}),
-               Error);  // rows in groups of two widths
+               Error);  // groups of rows with two widths
 }
 
 }  // namespace

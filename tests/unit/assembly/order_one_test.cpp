@@ -1,4 +1,4 @@
-// The displacement of order 1 within that of order 2.
+// Embedding of displacements of order 1 in order 2.
 #include "assembly/order_one.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@
 namespace sprekk::assembly {
 namespace {
 
-/// A linear field at corners becomes the same field at all nodes, those at quarter points too; corners keep theirs.
+/// A linear field at corners is extended to the same field at all nodes, including nodes at quarter points. Corners
+/// are unchanged.
 TEST(OrderOne, LinearFieldsAreMet) {
   for (const auto& cell : mesh::testing::all_cells)
     for (const bool quarter_points : {false, true}) {

@@ -29,7 +29,7 @@ using mesh::operator*;
 
 bool is_flat(const std::string& cell) { return cell == "triangle" || cell == "quadrilateral"; }
 
-/// A box of unit steps, of order 2, with fractures {lowest x, y, greatest x, y} along all of its third direction.
+/// Returns a box of unit steps, of order 2, with fractures {lowest x, y, greatest x, y} over the full third direction.
 mesh::BoxMesh box(const std::string& cell, std::vector<int> n, const std::vector<std::array<Real, 4>>& fractures) {
   mesh::BoxMesh result;
   result.cell = cell;
@@ -49,7 +49,7 @@ mesh::BoxMesh box(const std::string& cell, std::vector<int> n, const std::vector
   return result;
 }
 
-/// Where a node on an edge is, as a part of the edge from its first corner; NaN off the edge.
+/// Returns the position of a node on an edge as a fraction of the edge from its first corner; NaN if not on the edge.
 Real place_on_edge(const GlobalMesh& mesh, GlobalIndex cell, const mesh::CellGeometry::Edge& edge) {
   const auto x = [&](int k) { return point(mesh, mesh.cells[cell * mesh::n_nodes(mesh.shape) + k]); };
   const Vector along = x(edge.to) - x(edge.from), off = x(edge.middle) - x(edge.from);
@@ -57,7 +57,7 @@ Real place_on_edge(const GlobalMesh& mesh, GlobalIndex cell, const mesh::CellGeo
   return norm(off - place * along) < 1e-14 * norm(along) ? place : NAN;
 }
 
-/// What every edge of every cell has: visit(cell, edge, whether its ends are tips, its node's place).
+/// Visits every edge of every cell: visit(cell, edge, whether its ends are tips, position of its node).
 template <class Visit>
 void for_each_edge(const GlobalMesh& mesh, const Visit& visit) {
   const auto is_tip = mesh::tip_nodes(mesh);
@@ -69,7 +69,7 @@ void for_each_edge(const GlobalMesh& mesh, const Visit& visit) {
     }
 }
 
-/// The smallest determinant of a mesh's cells at the points of CurvedQuadrature, and the volume.
+/// Returns the smallest Jacobian determinant at the points of CurvedQuadrature, and the volume.
 std::array<Real, 2> least_determinant_and_volume(const GlobalMesh& mesh) {
   return mesh::for_shape(mesh.shape, [&](auto s) {
     constexpr Shape shape = s();
@@ -106,13 +106,13 @@ TEST(QuarterPoints, OfEdgesFromTips) {
     const auto [least, volume] = least_determinant_and_volume(mesh);
     EXPECT_GT(least, 0);
     EXPECT_NEAR(volume, is_flat(cell) ? 24 : 48, 1e-11);
-    for (std::size_t node = 0; node < mesh.parent_node.size(); ++node)  // both sides of fractures move alike
+    for (std::size_t node = 0; node < mesh.parent_node.size(); ++node)  // both sides of fractures move equally
       EXPECT_LE(norm(point(mesh, static_cast<GlobalIndex>(node)) - point(mesh, mesh.parent_node[node])), 1e-14);
     EXPECT_EQ(mesh.cells, before.cells);
   }
 }
 
-/// In a cell [0, 1]^2 x [0, 1] with the tip at its origin, or along its third direction.
+/// Cell [0, 1]^2 x [0, 1] with the tip at its origin, or along its third direction.
 TEST(QuarterPoints, NodesInside) {
   auto square = make_box(box("quadrilateral", {2, 2}, {{0, 1, 1, 1}}));
   move_to_quarter_points(square);
@@ -133,14 +133,14 @@ TEST(QuarterPoints, NodesInside) {
   EXPECT_TRUE(near(of(cube, {1, 1, 0}, 21), {2, 1.5, 0.5}));
 }
 
-/// Of a fracture of one face both ends are tips: the cells beside it would collapse onto it.
+/// Both ends of a fracture of one face are tips: quarter points would make the adjacent cells degenerate.
 TEST(QuarterPoints, NotInCellsWithAFaceOfTips) {
   for (const auto& cell : mesh::testing::all_cells) {
     SCOPED_TRACE(cell);
     auto mesh = make_box(box(cell, {5, 4, 1}, {{2, 2, 3, 2}}));
     move_to_quarter_points(mesh);
     const int n = mesh::n_nodes(mesh.shape);
-    std::vector<GlobalIndex> still;  // nodes of cells with the fracture's corners
+    std::vector<GlobalIndex> still;  // nodes of cells that contain the corners of the fracture
     for (const auto& face : mesh.fracture_faces)
       for (int side : {0, 1})
         still.insert(still.end(), mesh.cells.begin() + face.cell[side] * n,
@@ -158,7 +158,7 @@ TEST(QuarterPoints, NotInCellsWithAFaceOfTips) {
   }
 }
 
-/// The curved sides of a cell, which would cross if one of them became straight, keep their nodes.
+/// A cell with curved edges: with one edge straightened, the edges would cross. This cell keeps its nodes.
 TEST(QuarterPoints, NotWhereTheMapWouldTurn) {
   const auto straight = make_box(box("triangle", {4, 4}, {{0, 2, 2, 2}}));
   auto mesh = straight, curved = straight;
@@ -168,7 +168,7 @@ TEST(QuarterPoints, NotWhereTheMapWouldTurn) {
   GlobalIndex bent = -1;
   for (GlobalIndex cell = 0; cell < straight.n_cells() && bent < 0; ++cell)
     for (int t = 0; t < 3; ++t) {
-      const int p = (t + 1) % 3, q = (t + 2) % 3;  // node 3 + t between t and p, 3 + p between p and q
+      const int p = (t + 1) % 3, q = (t + 2) % 3;  // node 3 + t is between t and p, 3 + p between p and q
       if (!is_tip[straight.cells[cell * 6 + t]] || x(cell, 3 + t)[1] == 2 || x(cell, 3 + q)[1] == 2) continue;
       bent = cell;
       const auto bend = [&](int k, Real by) {
@@ -193,7 +193,8 @@ TEST(QuarterPoints, NotWhereTheMapWouldTurn) {
       EXPECT_FALSE(differ(curved, original, node));
       still += differ(mesh, straight, node);
     } else {
-      EXPECT_LE(differ(curved, original, node), differ(mesh, straight, node));  // less next to the bent sides
+      EXPECT_LE(differ(curved, original, node), differ(mesh, straight, node));  // fewer nodes move next to the curved
+                                                                                // edges
       moved += differ(curved, original, node);
     }
   }
@@ -201,8 +202,8 @@ TEST(QuarterPoints, NotWhereTheMapWouldTurn) {
   EXPECT_GT(moved, 0);
 }
 
-/// Where the front of one fracture ends at another one, that one's sides have the same nodes still, though its far side
-/// has no tip.
+/// Front of a fracture that ends at another fracture. The two sides of the other fracture keep equal node positions,
+/// although its far side has no tip.
 TEST(QuarterPoints, OfAFrontThatEndsAtAFracture) {
   for (const char* cell : {"tetrahedron", "hexahedron"}) {
     SCOPED_TRACE(cell);
@@ -223,12 +224,13 @@ TEST(QuarterPoints, OfAFrontThatEndsAtAFracture) {
   }
 }
 
-/// As many nodes at the same places as in the box of twice the cells, on any number of ranks.
+/// A refined distributed mesh has as many nodes, at the same coordinates, as the box with twice the cells, on any
+/// number of ranks.
 TEST(QuarterPoints, OfPartsThatWereRefined) {
   const auto comm = Tpetra::getDefaultComm();
   for (const auto& cell : mesh::testing::all_cells) {
     auto parameters = box(cell, {6, 4, 2}, {{1, 2, 4, 2}, {3, 1, 3, 3}});
-    if (!is_flat(cell)) {  // its front ends in the other, whose far side has no tips
+    if (!is_flat(cell)) {  // the front ends at the other fracture, whose far side has no tips
       parameters.fractures["f1"].lower_corner = {2, 1, 1};
       parameters.fractures["f1"].upper_corner = {3, 2, 1};
     }
@@ -276,8 +278,8 @@ TEST(QuarterPoints, ThroughPeriodicSides) {
   EXPECT_GT(moved, 0);
 }
 
-/// By hand: with l of the corners and rho the sum of those that are no tips, 27 l1 l2 l3 has the mean 3/7 under the
-/// area 2 rho^2 (one tip) or 2 rho (1 + rho) (two).
+/// Manual result: l are the barycentric coordinates of the corners, rho is the sum over corners that are not tips. The
+/// mean of 27 l1 l2 l3 is 3/7 with the area element 2 rho^2 (one tip) or 2 rho (1 + rho) (two tips).
 TEST(QuarterPoints, MeansOfBubblesOnTriangles) {
   const auto parameters = box("tetrahedron", {4, 4, 2}, {{1, 2, 4, 2}});
   const auto mesh = mesh::make_distributed(
@@ -296,7 +298,7 @@ TEST(QuarterPoints, MeansOfBubblesOnTriangles) {
   }
 }
 
-/// Mean over a simplex of 1 over the sum of the barycentric coordinates of the corners that are no tips.
+/// Returns the mean over a simplex of 1/R, with the sum R of the barycentric coordinates of corners that are not tips.
 template <Shape shape>
 Real mean_of_inverse(const std::vector<int>& tips) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
@@ -330,7 +332,7 @@ Real mean_of_inverse(const std::vector<int>& tips) {
   return sum / volume;
 }
 
-/// The sum is distributed as 2 R, 3 R^2 (one tip) and 6 R (1 - R) (two).
+/// The density of R is 2 R (triangles), 3 R^2 (tetrahedra, one tip) and 6 R (1 - R) (tetrahedra, two tips).
 TEST(CurvedRule, IsExactForTheSquareOfAFieldThatGrowsWithTheRoot) {
   for (int a = 0; a < 3; ++a) EXPECT_NEAR(mean_of_inverse<Shape::triangle6>({a}), 2, 1e-13) << a;
   for (int a = 0; a < 4; ++a) {
@@ -339,8 +341,8 @@ TEST(CurvedRule, IsExactForTheSquareOfAFieldThatGrowsWithTheRoot) {
   }
 }
 
-/// In a square with its tip at one corner, (s (s + t - s t), t (s + t - s t)) in s, t from there: the mean of 1/(x +
-/// y).
+/// Mean of 1/(x + y) on a square with its tip at one corner, with the map (s (s + t - s t), t (s + t - s t)) from
+/// there.
 TEST(CurvedRule, OfSquares) {
   const Real corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   for (int tip = 0; tip < 4; ++tip) {

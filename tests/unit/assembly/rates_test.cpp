@@ -7,7 +7,7 @@ namespace {
 
 using Scheme = Rates::Scheme;
 
-/// The rate of M at t by states at t, t - dt and t - dt - dt_before.
+/// Returns the rate of M at t, computed from states at t, t - dt and t - dt - dt_before.
 template <class Stored>
 Real rate(Scheme scheme, const Stored& M, Real t, Real dt, Real dt_before) {
   const auto rates = Rates::of(scheme, dt, dt_before);

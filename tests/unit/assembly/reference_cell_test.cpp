@@ -31,7 +31,7 @@ class ReferenceCells : public ::testing::Test {
     for (int i = 0; i < dim; ++i) xi[i] = is_simplex(shape) ? (a == i + 1 ? 1 : 0) : square[a][i];
   }
 
-  /// Point number k inside of the cell.
+  /// Sets xi to the pseudo-random point k inside the cell.
   static void inside(int k, Point& xi) {
     for (int i = 0; i < dim; ++i) {
       const Real random = test::pseudo_random(k, i);
@@ -39,7 +39,7 @@ class ReferenceCells : public ::testing::Test {
     }
   }
 
-  /// A point of a face: weights of its corners, bilinear for four of them.
+  /// Sets xi to a point of a face by weights of its corners, bilinear for four corners.
   static void on_face(int face, Real s, Real t, Point& xi) {
     const auto corners = mesh::face_nodes(shape)[face];
     const int m = mesh::n_face_nodes(shape);
@@ -160,7 +160,7 @@ TYPED_TEST(ReferenceCells, BubbleHasItsMeanOnItsFace) {
   }
 }
 
-/// Integral of x^a y^b z^c over the reference cell.
+/// Returns the integral of x^a y^b z^c over the reference cell.
 Real exact_integral(Shape shape, int a, int b, int c) {
   const int dim = mesh::dimension(shape);
   if (is_simplex(shape))
@@ -180,7 +180,8 @@ Real integrate(int a, int b, int c) {
   return sum;
 }
 
-/// Checks all monomials of the degree (total on simplices, per direction else), and that degree + 1 is not exact.
+/// Checks all monomials of the degree (simplices: total degree, else: per direction), and that degree + 1 is not
+/// exact.
 template <class Rule>
 void expect_exact_to(Shape shape, int degree) {
   const int last = Rule::dim == 3 ? degree : 0;
@@ -208,7 +209,7 @@ TYPED_TEST(ReferenceCells, QuadratureIsExactForTheDegreesItClaims) {
   if (is_simplex(shape)) expect_exact_to<CentroidRule<shape>>(shape, 1);
 }
 
-/// Gradients and volumes of a cell that is an affine map x = F xi + x0 of the reference cell.
+/// Gradients and volumes of an affine image x = F xi + x0 of the reference cell.
 TYPED_TEST(ReferenceCells, CellPointOfAnAffineCell) {
   constexpr int dim = TestFixture::dim, n = TestFixture::n;
   const Real F[3][3] = {{2, 0.3, -0.4}, {-0.5, 1.5, 0.2}, {0.1, 0.6, 0.9}};

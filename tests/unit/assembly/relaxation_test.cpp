@@ -1,4 +1,4 @@
-// Fixed-point iterations that diverge or oscillate when they are not relaxed.
+// Fixed-point iterations that diverge or oscillate without relaxation.
 #include "assembly/relaxation.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using Map = std::function<std::vector<Real>(const std::vector<Real>&)>;
 
-/// Steps until the largest |g(y) - y| is below 1e-3; many if there is no end.
+/// Returns the number of steps until the largest |g(y) - y| is below 1e-3; `many` without convergence.
 int steps(const Map& g, std::vector<Real> y) {
   constexpr int many = 200;
   Relaxation relaxation;
@@ -27,8 +27,8 @@ int steps(const Map& g, std::vector<Real> y) {
   return many;
 }
 
-/// ln of the apertures of valves in a pipe. The flow of 1 meets the resistance exp(-3 y) in each; what the pressure
-/// before a valve exceeds the stress on it opens the valve by 10, and a thousandth of 7 remains where it does not.
+/// Fixed-point map of the logarithms y of valve apertures in a pipe. The flow 1 has the pressure drop exp(-3 y) in
+/// each valve. The aperture is 10 (pressure before the valve - stress on the valve), at least 7e-3.
 Map valves(const std::vector<Real>& stress) {
   return [stress](const auto& y) {
     std::vector<Real> g(y.size());
@@ -42,7 +42,7 @@ Map valves(const std::vector<Real>& stress) {
 }
 
 TEST(Relaxation, FindsALineAtOnce) {
-  // the second step knows the slope, which a line has everywhere
+  // The second step uses the measured slope, which is exact for a line.
   EXPECT_EQ(steps([](const auto& y) { return std::vector<Real>{-3 * y[0]}; }, {0.5}), 2);
 }
 
@@ -50,7 +50,7 @@ TEST(Relaxation, OpensValvesWithoutStress) {
   for (const int n : {2, 5, 20}) EXPECT_LE(steps(valves(std::vector<Real>(n, 0)), std::vector<Real>(n, 3)), 20) << n;
 }
 
-/// Without limits on steps these never settle: the valves open and close each other.
+/// Without limits on the steps these iterations oscillate: the valves alternately open and close each other.
 TEST(Relaxation, SettlesValvesThatStressCloses) {
   for (const auto& stress : std::vector<std::vector<Real>>{{2, 2}, {2, 0}, {3, 1}, {4, 2}, {3, 0}})
     EXPECT_LE(steps(valves(stress), {2, 2}), 35) << stress[0] << ' ' << stress[1];

@@ -26,7 +26,7 @@ RCP<const mesh::Mesh> make_mesh() {
   return mesh::make_distributed(mesh::make_box(mesh::testing::crossed("triangle")), Tpetra::getDefaultComm());
 }
 
-/// The same with all cells on the last rank.
+/// Returns the mesh of make_mesh() with all cells on the last rank.
 RCP<const mesh::Mesh> make_lopsided_mesh() {
   const auto comm = Tpetra::getDefaultComm();
   const auto global = mesh::make_box(mesh::testing::crossed("triangle"));
@@ -40,7 +40,7 @@ std::unique_ptr<Springs> springs(Real force = 0, Real power = 0) {
   return module;
 }
 
-/// Springs with a force in direction x on every node, glue, and hardening: both kinds of modules in one block.
+/// Springs with a force in direction x on every node, glue, and hardening: linear and nonlinear modules in one block.
 test::Modules all_modules(Real force = 0, Real power = 0) {
   test::Modules modules;
   modules.push_back(springs(force, power));
@@ -79,7 +79,7 @@ TEST(System, RawResidualIsTheSumOfTheModulesResiduals) {
         }
         expect_equal(r, sum);
         EXPECT_GT(r[0]->normInf(), 1);
-        system->raw_residual(x, part);  // pure in x
+        system->raw_residual(x, part);  // no dependence on the previous content of r
         expect_equal(r, part, 0);
       }
     }
@@ -105,7 +105,7 @@ TEST(System, JacobianIsTheSumOfTheModulesJacobiansAtTheLastPoint) {
     auto part = system->create_matrix();
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
-        ASSERT_EQ(system->matrix()(i, j).is_null(), i == 0 && j == 1);  // springs do not know the glue
+        ASSERT_EQ(system->matrix()(i, j).is_null(), i == 0 && j == 1);  // springs do not depend on the glue
         ASSERT_EQ(part(i, j).is_null(), i == 0 && j == 1);
         if (part(i, j).is_null()) continue;
         Dense total = test::gather(*system->matrix()(i, j));
@@ -121,7 +121,7 @@ TEST(System, JacobianIsTheSumOfTheModulesJacobiansAtTheLastPoint) {
 
 TEST(System, LinearBlocksAreAssembledOnce) {
   test::Modules modules = all_modules();
-  modules.pop_back();  // without hardening the displacement block is linear
+  modules.pop_back();  // without hardening, the displacement block is linear
   auto system = make_system(make_mesh(), std::move(modules));
   system->set_time(1, 1);
   auto x = system->initial();
@@ -196,10 +196,10 @@ TEST(System, ScalesFollowTheLoadsAndNeverShrink) {
   pulled.compile();
   auto system = make_system(mesh, all_modules(3, 1), {hold(*mesh, "wall", "west", {pulled, base::Expression(0)})});
   system->set_time(1, 1);
-  EXPECT_DOUBLE_EQ(system->scales().at("stress"), 25);  // E u/L above the load 3
+  EXPECT_DOUBLE_EQ(system->scales().at("stress"), 25);  // E u/L exceeds the load 3
   EXPECT_DOUBLE_EQ(system->scales().at("displacement"), 0.5);
   EXPECT_DOUBLE_EQ(system->blocks()[0].kinematic_scale, 0.5);
-  const Real face = std::sqrt(24.0 / 48);  // of a cell of average area
+  const Real face = std::sqrt(24.0 / 48);  // face of a cell of average size
   EXPECT_NEAR(system->blocks()[0].residual_scale, 25 * face, 1e-12);
   EXPECT_DOUBLE_EQ(system->blocks()[1].kinematic_scale, 25);
   system->set_time(0.1, 1);
@@ -227,7 +227,7 @@ TEST(System, MeasuresAreRelativeToTheScales) {
   EXPECT_NEAR(measures[1].value, 5 / system->scales().at("stress"), 1e-14);
   EXPECT_EQ(measures[2].name, "largest glue");
   EXPECT_NEAR(measures[2].value, 50 / system->scales().at("stress"), 1e-14);
-  for (GlobalIndex first : {2, 3}) {  // a number that is none is never small, wherever it stands
+  for (GlobalIndex first : {2, 3}) {  // a NaN gives no small measure, in any position
     r[1]->putScalar(0);
     if (r[1]->getMap()->isNodeGlobalElement(first)) set(1, first, std::numeric_limits<Real>::quiet_NaN());
     EXPECT_FALSE(system->measures(x, r)[1].value < 1e300) << first;
@@ -278,7 +278,7 @@ TEST(System, ReactionsBalanceTheLoads) {
   ASSERT_EQ(reactions.size(), 2u);
   EXPECT_EQ(reactions[0].condition, "wall");
   EXPECT_EQ(reactions[1].condition, "floor");
-  EXPECT_NEAR(reactions[0].force[0], -0.75 * static_cast<Real>(mesh->n_global_nodes), 1e-10);  // all nodes are pulled
+  EXPECT_NEAR(reactions[0].force[0], -0.75 * static_cast<Real>(mesh->n_global_nodes), 1e-10);  // all nodes are loaded
   EXPECT_EQ(reactions[1].force[0], 0);
   EXPECT_NEAR(reactions[0].force[1] + reactions[1].force[1], 0, 1e-10);
 }
@@ -296,7 +296,7 @@ TEST(System, CommitMovesTheHistoriesOnAndNothingElseDoes) {
   expect_equal(before, after, 0);
   system->commit(x);
   system->residual(x, after);
-  after[1]->update(1, *x[1], 1);  // the old glue entered with a minus
+  after[1]->update(1, *x[1], 1);  // the residual contains the old glue with a negative sign
   expect_equal(before, after);
 }
 

@@ -1,4 +1,4 @@
-// Rules for functions of the root of the distance to crack tips.
+// Quadrature rules for functions of the square root of the distance to crack tips.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,8 +44,8 @@ TEST(TipRule, OfEdges) {
   EXPECT_NEAR(integral(tip_rule_of_edge({0, 1}, 4), [](Real x, Real, Real) { return 1 / std::sqrt(1 - x); }), 2, 1e-14);
 }
 
-/// rho = 1 - (1 - x)(1 - y)/4 on the square with its tip at (-1, -1): from integrals in polar-free form,
-/// rho^(-1/2) integrates to 4 (sum over k of c_k / (k + 1)^2) with (1 - t)^(-1/2) = sum c_k t^k.
+/// rho = 1 - (1 - x)(1 - y)/4 on the square with its tip at (-1, -1). The integral of rho^(-1/2) is 4 sum c_k / (k +
+/// 1)^2, with (1 - t)^(-1/2) = sum c_k t^k.
 TEST(TipRule, OnSquares) {
   Real exact = 0, c = 1;
   for (int k = 0; k < 2000000; ++k) {
@@ -63,7 +63,8 @@ TEST(TipRule, OnSquares) {
   }
 }
 
-/// Along an edge of tips, rho = 1 - (1 - x)(1 - y)/4 does not depend on z; in cubes with one tip the rules agree.
+/// For an edge of tips, rho = 1 - (1 - x)(1 - y)/4 does not depend on z. In cubes with one tip, rules of two orders
+/// agree.
 TEST(TipRule, OnCubes) {
   const auto square = tip_rule(Shape::quadrilateral, {1, 0, 0, 0}, 12);
   const auto root = [](Real x, Real y, Real) { return 1 / std::sqrt(1 - (1 - x) * (1 - y) / 4); };

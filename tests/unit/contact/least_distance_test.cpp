@@ -1,4 +1,4 @@
-// The nearest point of a polyhedron, against points known by geometry and against the conditions that it satisfies.
+// Nearest point of a polyhedron, compared with geometric solutions and optimality conditions.
 #include "contact/least_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -35,15 +35,14 @@ TEST(LeastDistance, IsNothingWhereNoPointSatisfiesAll) {
   EXPECT_FALSE(least_distance({{1, 0}, {0, 1}, {-1, -1}}, {1, 1, -1}, 2));
 }
 
-/// y is nearest if it satisfies the rows, and is a sum of active rows with factors that are not negative: here, that no
-/// other point that satisfies them is nearer, along segments from y to many such points.
+/// Checks that no other admissible point is nearer, along segments from y to many such points.
 TEST(LeastDistance, IsNearestAmongMany) {
   std::mt19937 random(7);
   std::normal_distribution<Real> normal;
   for (int n : {2, 3, 6, 12})
     for (int m : {1, 5, 40}) {
       SCOPED_TRACE(testing::Message() << n << " unknowns, " << m << " rows");
-      std::vector<Real> inside(n);  // there is a point that satisfies all
+      std::vector<Real> inside(n);  // an admissible point exists
       for (Real& value : inside) value = normal(random);
       Rows G(m, std::vector<Real>(n));
       std::vector<Real> h(m, 0);
@@ -52,7 +51,7 @@ TEST(LeastDistance, IsNearestAmongMany) {
         for (int i = 0; i < n; ++i) h[k] += G[k][i] * inside[i];
         h[k] -= 0.1 * std::abs(normal(random));
       }
-      for (int k = 0; k < m; k += 3) {  // some twice
+      for (int k = 0; k < m; k += 3) {  // some rows twice
         G.push_back(G[k]);
         h.push_back(h[k]);
       }

@@ -1,4 +1,4 @@
-// Pieces that nothing holds, for grips made by hand: a column of three blocks along y, cut by "lower" and "upper".
+// Floating blocks for prescribed contact constraints: a column of three blocks along y, cut by "lower" and "upper".
 #include "contact/loose_pieces.hpp"
 
 #include <gmock/gmock.h>
@@ -43,10 +43,10 @@ mesh::BoxMesh column_box(const std::string& cell, int width = 2) {
   return box;
 }
 
-/// How the sides of a fracture hold each other.
+/// Contact constraint between the sides of a fracture.
 struct Contact {
   enum { open, slip, stick } state = open;
-  Vector along = {1, 0, 0};  ///< of the slip
+  Vector along = {1, 0, 0};  ///< direction of slip
 };
 const Contact open{}, stick{Contact::stick}, slip{Contact::slip};
 
@@ -91,7 +91,7 @@ struct Column {
     for (int i = 0; i < mesh->dim(); ++i) result[i] = mesh->coordinates[node * mesh->dim() + i];
     return result;
   }
-  /// Number of the block that each owned node is in, from below: that of the cells around.
+  /// Returns the block (from below) of each owned node, by the adjacent cells.
   std::vector<int> block_of_node() const {
     std::vector<int> block(layout.n_owned_entities(), -1);
     const int n = mesh->nodes_per_cell();
@@ -104,7 +104,8 @@ struct Column {
     }
     return block;
   }
-  /// A displacement that is a rigid motion of each block, by the centre and largest extent of the first.
+  /// Returns a displacement that is a rigid motion q of each block; coordinates refer to the centre and the largest
+  /// extent of the block.
   fields::Vector rigid(const std::array<RigidRow, 3>& q) const {
     fields::Vector u(layout.owned());
     const auto blocks = block_of_node();
@@ -115,7 +116,8 @@ struct Column {
     return u;
   }
   RigidFrame frame(int block) const { return {{1, 0.5 + block, mesh->dim() == 3 ? 1.0 : 0.0}, 2}; }
-  /// The free motions are orthonormal in rigid coordinates: the trace of the projection on them is their number.
+  /// Returns the number of free motions. They are orthonormal in rigid coordinates, so it is the trace of the
+  /// projection on them.
   Real n_motions() {
     if (!pieces.any()) return 0;
     Real trace = 0;
@@ -129,8 +131,8 @@ struct Column {
       }
     return trace;
   }
-  /// Of a motion that is rigid in each block, from least squares that treat the modes of a block one by one: they are
-  /// orthogonal on these meshes, which are symmetric about the centres of blocks.
+  /// Returns a coordinate of a motion that is rigid in each block, by least squares for each mode. The modes of a
+  /// block are orthogonal because these meshes are symmetric about the centres of blocks.
   Real coordinate(const fields::Vector& u, int block, int mode) const {
     std::array<RigidRow, 3> q{};
     q[block][mode] = 1;
@@ -180,7 +182,7 @@ TEST(LoosePieces, SlidesBetweenTwoThatAreHeld) {
     column.find(slip, stick);
     EXPECT_FALSE(column.pieces.any());
     if (dim_of(cell) == 2) continue;
-    column.find(slip, {Contact::slip, {0.6, 0, 0.8}});  // in different directions
+    column.find(slip, {Contact::slip, {0.6, 0, 0.8}});  // different directions
     EXPECT_FALSE(column.pieces.any());
     column.find({Contact::slip, {0.6, 0, 0.8}}, {Contact::slip, {0.6, 0, 0.8}});
     const auto oblique = column.pieces.part_of(column.rigid({RigidRow{}, {3, 0, 4}, {}}));
@@ -199,13 +201,13 @@ TEST(LoosePieces, FreeOfEverything) {
     ASSERT_NEAR(standing.n_motions(), 2 * n, 1e-8) << cell;
     standing.find(stick, open);
     ASSERT_NEAR(standing.n_motions(), n, 1e-8) << cell;
-    standing.find(open, stick);  // the two as one
+    standing.find(open, stick);  // the two upper blocks together
     ASSERT_NEAR(standing.n_motions(), n, 1e-8) << cell;
     EXPECT_THAT(standing.pieces.describe(standing.pieces.first()), HasSubstr("and 1 more"));
   }
 }
 
-/// Sides that are tied to each other allow no rotation, also on one cell whose nodes are but one row of free ones.
+/// Tied sides allow no rotation, also with one layer of cells that has only one layer of independent nodes.
 TEST(LoosePieces, PeriodicSides) {
   for (const auto& cell : all_cells)
     for (int width : {2, 1}) {
@@ -236,7 +238,7 @@ TEST(LoosePieces, PeriodicSides) {
     }
 }
 
-/// The pieces on both sides of a crack across a layer are one, as they are tied to each other at the other end.
+/// The blocks on both sides of a crack across a layer form one block: they are tied to each other at the other end.
 TEST(LoosePieces, TiedToEachOther) {
   for (const auto& cell : all_cells) {
     const int dim = dim_of(cell);
@@ -289,7 +291,7 @@ TEST(LoosePieces, SlideTogetherThoughEachSticksToTheOther) {
   }
 }
 
-/// A face acts at its centre.
+/// A face transmits force at its centre.
 TEST(LoosePieces, TurnsAboutOneFace) {
   for (const std::string cell : {"quadrilateral", "hexahedron"}) {
     Column column(column_box(cell, 1), {"south", "north"});
@@ -309,7 +311,7 @@ TEST(LoosePieces, TurnsAboutOneFace) {
   }
 }
 
-/// part_of() is a projection, and add() its inverse.
+/// part_of() is a projection, and add() is its inverse.
 TEST(LoosePieces, PartsAddUp) {
   for (const auto& cell : all_cells)
     for (const auto& contacts : {std::pair{open, open}, {slip, stick}, {stick, slip}}) {
@@ -328,11 +330,11 @@ TEST(LoosePieces, PartsAddUp) {
     }
 }
 
-/// Each mode is a free motion, all of it, and there are as many as there should be, each another one.
+/// Each mode is a free motion, and their number is correct; the modes are independent.
 TEST(LoosePieces, ModesAreFreeMotions) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south"});
-    column.find(open, open);  // two groups, of one piece each
+    column.find(open, open);  // two groups of one block each
     const int n = dim_of(cell) == 2 ? 3 : 6;
     ASSERT_EQ(column.pieces.most_modes(), n);
     for (int k = 0; k < n; ++k) {
@@ -373,8 +375,8 @@ TEST(LoosePieces, ProximalOnThoseThatAreLoose) {
     }
 }
 
-/// Of the displacements that differ by a free motion, the smallest: none for a motion of the loose block, and where it
-/// must not come nearer than 0.1 to the block above, or below, a shift by as much.
+/// Minimum-norm displacement among those that differ by a free motion. It is zero for a motion of the floating block.
+/// If the block must keep a distance of 0.1 from a neighbour, it is a translation by 0.1.
 TEST(LoosePieces, ComesToLieNearest) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south", "north"});
@@ -382,7 +384,7 @@ TEST(LoosePieces, ComesToLieNearest) {
     ASSERT_EQ(column.pieces.n_groups(), 1);
     std::array<RigidRow, 3> moved{};
     for (int mode : contact::rigid_modes(column.mesh->dim())) moved[1][mode] = 0.3 + 0.1 * mode;
-    for (const Real side : {0, 1, -1}) {  // which neighbour is in the way
+    for (const Real side : {0, 1, -1}) {  // the neighbour that is an obstacle
       std::vector<LoosePieces::Obstacle> obstacles;
       for (LocalIndex f = 0; f < column.mesh->n_owned_fracture_faces && side != 0; ++f) {
         const auto& face = column.mesh->fracture_faces[f];
@@ -403,8 +405,8 @@ TEST(LoosePieces, ComesToLieNearest) {
   }
 }
 
-/// A block between two others on which it slides shares their slip equally, wherever it lies; but not so far that a
-/// slip turns back.
+/// A block that slides on both neighbours moves until both slips are equal, from any position. The motion is limited
+/// so that no slip changes its sign.
 TEST(LoosePieces, SlidesToWhereSlipIsLeast) {
   for (const auto& cell : all_cells)
     for (const Real place : {0.0, 0.7}) {
@@ -418,7 +420,8 @@ TEST(LoosePieces, SlidesToWhereSlipIsLeast) {
       for (LocalIndex f = 0; f < column.mesh->n_owned_fracture_faces; ++f) {
         const auto& face = column.mesh->fracture_faces[f];
         const bool upper = column.mesh->fracture_names[face.fracture] == "upper";
-        const Vector along{face.frame[0][1] > 0 ? 1.0 : -1.0, 0, 0};  // of the block above, over the one below
+        const Vector along{face.frame[0][1] > 0 ? 1.0 : -1.0, 0, 0};  // slip of the block above relative to the block
+                                                                      // below
         slides.push_back({f, along, upper ? 0.5 : 0.1, true});
         if (upper) obstacles.push_back({f, along, -0.15});
       }
@@ -433,7 +436,7 @@ TEST(LoosePieces, SlidesToWhereSlipIsLeast) {
     }
 }
 
-/// Next to the softest block the proximal term is as small as in that one, and rigid motions leave nothing.
+/// Next to the softest block, the proximal term is as small as inside. Removal of rigid motions leaves zero.
 TEST(LoosePieces, BlocksOfOtherStiffness) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south"});
@@ -456,8 +459,8 @@ TEST(LoosePieces, BlocksOfOtherStiffness) {
   }
 }
 
-/// Forces of tractions lambda on the sides of all faces: -lambda on plus, lambda on minus, in equal shares at the
-/// nodes; the residual is their opposite. What of lambda is excess does no work.
+/// Forces of tractions lambda on the sides of all faces, in equal parts at the nodes: -lambda on plus, lambda on
+/// minus. The residual is their opposite. The excess part of lambda does no work.
 TEST(LoosePieces, WorkIsThatOfTheLaw) {
   const auto law = [](const Vector& x) { return Vector{1 + 0.3 * x[1], 0.2 * x[0] - 0.5, 0.4 + 0.1 * x[2]}; };
   const auto excess = [](const Vector& x) { return Vector{-7 + x[1], 5 * x[0], 2 * x[2] - x[0]}; };
@@ -483,7 +486,7 @@ TEST(LoosePieces, WorkIsThatOfTheLaw) {
         q[1][mode] = 0.3;
         q[2][mode] = upper.state == Contact::stick ? 0.3 : -0.4;
         const auto motion = column.pieces.part_of(column.rigid(q));
-        Real here = 0, expected = 0;  // of a face on the block above it, minus that on the one below
+        Real here = 0, expected = 0;  // work of the face on the block above, minus work on the block below
         for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
           const auto& face = mesh.fracture_faces[f];
           const int below = face.centre[1] < 1.5 ? 0 : 1;

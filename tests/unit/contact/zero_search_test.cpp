@@ -1,4 +1,4 @@
-// The search for a zero ends on every function, and finds the zero of one that does not fall.
+// The search for a zero terminates for every function; it finds the zero of a non-decreasing function.
 #include "contact/zero_search.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Real infinity = std::numeric_limits<Real>::infinity(), nan = std::numeric_limits<Real>::quiet_NaN();
 
-/// The result; fails where it takes more values than it says.
+/// Returns the finished search; fails if the search needs more than `most_values` values.
 ZeroSearch searched(const std::function<Real(Real)>& f, Real first = 0.1, Real reach = 1e3) {
   ZeroSearch search(f(0), first, reach);
   int n_values = 0;
@@ -33,7 +33,7 @@ TEST(ZeroSearch, FindsTheZeroToATenthOfTheValueAtTheStart) {
   }
 }
 
-/// What never rises above zero has no zero within reach.
+/// A function that is never above zero within reach has no zero.
 TEST(ZeroSearch, IsLostBeyondReach) {
   EXPECT_TRUE(searched([](Real) { return -1; }).lost());
   EXPECT_TRUE(searched([](Real s) { return s - 2e3; }).lost());
@@ -47,15 +47,14 @@ TEST(ZeroSearch, StaysWhereNothingPulls) {
   }
 }
 
-/// Of a function that jumps it takes a place beside the jump.
+/// For a function with a jump through zero, the result is next to the jump.
 TEST(ZeroSearch, EndsAtAJump) {
   const auto search = searched([](Real s) { return s < 3 ? -1 : 10; });
   EXPECT_FALSE(search.lost());
   EXPECT_NEAR(search.s, 3, 1e-2);
 }
 
-/// Another piece has moved meanwhile: no value but the first is below zero, and all steps towards 0 are too short to
-/// tell from it.
+/// Another block has moved: only the first value is below zero, and the steps towards 0 become too small.
 TEST(ZeroSearch, EndsWhereTheZeroHasGone) {
   for (const Real start : {-1e-20, -1e-300, -std::numeric_limits<Real>::denorm_min()}) {
     const auto search = searched([&](Real s) { return s == 0 ? start : 1; });

@@ -8,11 +8,11 @@
 namespace sprekk::test {
 namespace {
 
-/// Nodes along an edge of trusses whose unknowns are few enough for dense factors, too many, and enough for several
-/// ranks.
+/// Numbers of nodes along an edge of a truss: few enough for dense factors; too many for dense factors; enough for
+/// several ranks.
 constexpr int few = 4, many = 7, shared = 12;
 
-/// Distance of A^-1 A x from x, over the largest of x.
+/// Returns the distance of A^-1 A x from x, relative to the largest component of x.
 Real error_of(const multigrid::DirectInverse& inverse, const CrsMatrix& A) {
   Vector x(A.getDomainMap()), b(A.getRangeMap()), y(A.getDomainMap());
   for (std::size_t i = 0; i < x.getLocalLength(); ++i)
@@ -35,7 +35,7 @@ TEST(DirectInverse, InvertsFewAndManyUnknowns) {
     const int n_rows = truss.matrix->getGlobalNumRows(), n_ranks = truss.matrix->getComm()->getSize();
     ASSERT_EQ(n_rows <= multigrid::DirectInverse::most_dense, n == few);
     ASSERT_EQ(n_rows >= 2 * multigrid::DirectInverse::least_of_a_rank, n == shared);
-    Vector factors(truss.matrix->getRowMap());  // not symmetric
+    Vector factors(truss.matrix->getRowMap());  // unsymmetric matrix
     for (std::size_t i = 0; i < factors.getLocalLength(); ++i)
       factors.replaceLocalValue(i, 1 + 0.1 * (truss.matrix->getRowMap()->getGlobalElement(i) % 7));
     truss.matrix->leftScale(factors);

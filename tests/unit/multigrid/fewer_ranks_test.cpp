@@ -17,7 +17,7 @@ using multigrid::Multigrid;
 
 const Comm& world() { return *Tpetra::getDefaultComm(); }
 
-/// A level made from a truss, before it moves.
+/// Level of a truss before its transfer to fewer ranks.
 struct Made {
   Made(const Truss& truss, Real skew)
       : A(multigrid::node_matrix(*truss.matrix, 3)), fine(multigrid::nodes_of(A, truss.modes)) {
@@ -41,7 +41,7 @@ struct Made {
   std::unique_ptr<multigrid::Galerkin> galerkin;
 };
 
-/// (node, neighbour, motion, place) of all ranks, by numbers.
+/// Returns the rows (node, neighbour, motion, place) of all ranks, sorted. Collective.
 std::vector<std::vector<Real>> told(const multigrid::Nodes& nodes) {
   std::vector<Real> here;
   const int m = nodes.n_modes * nodes.n_modes, width = m + 5;
@@ -63,7 +63,7 @@ std::vector<std::vector<Real>> told(const multigrid::Nodes& nodes) {
   return rows;
 }
 
-/// Matrix, interpolation and what is known of nodes are the same wherever the nodes are, for later values, too.
+/// Matrix, interpolation and data of the nodes do not depend on the ranks, also after an update of the values.
 TEST(FewerRanks, KeepTheLevelAsItIs) {
   for (const Real skew : {0.0, 0.2})
     for (int n_ranks = 1; n_ranks <= world().getSize(); ++n_ranks) {
@@ -101,7 +101,8 @@ TEST(FewerRanks, KeepTheLevelAsItIs) {
     }
 }
 
-/// Of conjugate gradients, or of a Richardson iteration where the matrix is not symmetric, to a residual of 1e-8.
+/// Returns the iterations to a residual of 1e-8: of conjugate gradients, or of Richardson's iteration if the matrix is
+/// unsymmetric.
 int iterations(const CrsMatrix& A, const Multigrid& M, bool symmetric) {
   Vector x(A.getRowMap()), r(A.getRowMap()), z(A.getRowMap()), p(A.getRowMap()), Ap(A.getRowMap());
   for (std::size_t i = 0; i < r.getLocalLength(); ++i)
@@ -120,8 +121,8 @@ int iterations(const CrsMatrix& A, const Multigrid& M, bool symmetric) {
   }
 }
 
-/// Levels end on one rank whatever the number of ranks, and aggregates join what was on several: iterations are those
-/// on one rank, 7 and 12, but for one.
+/// Levels end on one rank for any number of ranks, and aggregates join nodes of several ranks. Iterations exceed those
+/// on one rank (7 and 12) by at most one.
 TEST(FewerRanks, LevelsEndOnOneRank) {
   multigrid::Options options;
   options.coarse_size = 30;

@@ -10,7 +10,7 @@
 namespace sprekk::test {
 namespace {
 
-/// One step from a level to the next, with all that it needs.
+/// Coarsening from a level to the next.
 struct Step {
   explicit Step(const CrsMatrix& matrix, const RCP<MultiVector>& modes, bool symmetric = true)
       : A(multigrid::node_matrix(matrix, 3)),
@@ -35,12 +35,12 @@ struct Step {
 TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
   const Truss truss(6, true, 0.1);
   const auto transposed = Tpetra::RowMatrixTransposer<Real, LocalIndex, GlobalIndex>(truss.matrix).createTranspose();
-  const auto square = rcp(new CrsMatrix(truss.map, 0));  // its columns are in another order
+  const auto square = rcp(new CrsMatrix(truss.map, 0));  // with another order of columns
   Tpetra::MatrixMatrix::Multiply(*truss.matrix, false, *truss.matrix, false, *square);
-  const auto cube = rcp(new CrsMatrix(truss.map, 0));  // with rows of 216 blocks
+  const auto cube = rcp(new CrsMatrix(truss.map, 0));  // rows of 216 blocks
   Tpetra::MatrixMatrix::Multiply(*square, false, *truss.matrix, false, *cube);
   cube->resumeFill();
-  cube->scale(1.0 / 64);  // numbers are then about as large as those of the others
+  cube->scale(1.0 / 64);  // magnitudes similar to the other matrices
   cube->fillComplete();
   for (const RCP<const CrsMatrix>& matrix : {RCP<const CrsMatrix>(truss.matrix), RCP<const CrsMatrix>(transposed),
                                              RCP<const CrsMatrix>(square), RCP<const CrsMatrix>(cube)}) {
@@ -58,7 +58,7 @@ TEST(NodeMatrix, MultipliesLikeTheMatrixThatItIsMadeOf) {
     for (std::size_t i = 0; i < from.getLocalLength(); ++i) {
       EXPECT_NEAR(y(i), to.getData()[i], 1e-12);
       EXPECT_NEAR(as_before.getData()[i], to.getData()[i], 1e-12);
-      EXPECT_NEAR(r(i), 0, 1e-13);  // two kernels may contract differently
+      EXPECT_NEAR(r(i), 0, 1e-13);  // two kernels may contract operations differently
     }
   }
 }
@@ -80,7 +80,7 @@ TEST(Aggregates, HoldEveryFreeNodeOnceAndNoOther) {
   EXPECT_LT(8 * aggregates.n, static_cast<LocalIndex>(nodes.free.size()) + 64);
 }
 
-/// Fewer aggregates, each still in one piece.
+/// With an aggregate size, there are fewer aggregates, and each is still connected.
 TEST(Aggregates, TakeNeighboursOfNeighbours) {
   const Truss truss(12, false, 0, 0, true);
   const auto nodes = multigrid::nodes_of(multigrid::node_matrix(*truss.matrix, 3), truss.modes);
@@ -91,7 +91,7 @@ TEST(Aggregates, TakeNeighboursOfNeighbours) {
   for (std::size_t i = 0; i < many.of.size(); ++i) members.at(many.of[i]).push_back(static_cast<LocalIndex>(i));
   for (const auto& all : members) {
     ASSERT_FALSE(all.empty());
-    std::vector<bool> reached(nodes.free.size(), false);  // over bars within the aggregate
+    std::vector<bool> reached(nodes.free.size(), false);  // reached over bars within the aggregate
     std::vector<LocalIndex> next(1, all.front());
     reached[all.front()] = true;
     std::size_t n = 0;
@@ -105,7 +105,7 @@ TEST(Aggregates, TakeNeighboursOfNeighbours) {
   }
 }
 
-/// The basis of each aggregate is orthonormal, and with the coarse motions gives the fine ones.
+/// The basis of each aggregate is orthonormal; multiplied by the coarse motions it gives the fine ones.
 TEST(Aggregates, KeepRigidMotions) {
   const Truss truss(7);
   const Step step(*truss.matrix, truss.modes);
@@ -123,8 +123,8 @@ TEST(Aggregates, KeepRigidMotions) {
   for (const Real square : squares) EXPECT_TRUE(square == 0 || std::fabs(square - 1) < 1e-12) << square;
 }
 
-/// A matrix without stiffness against rigid motions: they are interpolated in single precision, and cost next
-/// to nothing on the next level.
+/// A matrix without stiffness against rigid motions: these are interpolated in single precision, and their energy on
+/// the next level is almost zero.
 TEST(Galerkin, InterpolatesRigidMotions) {
   const Truss truss(7);
   const Step step(*truss.matrix, truss.modes);
@@ -142,10 +142,10 @@ TEST(Galerkin, InterpolatesRigidMotions) {
   }
 }
 
-/// coarse = R A P, with R the transpose of P, or but for single precision of the P that the transpose of the matrix
-/// has.
+/// Checks coarse = R A P and that R is the transpose of P. For unsymmetric matrices, R is compared with P of the
+/// transposed matrix, up to single precision.
 TEST(Galerkin, MultipliesAndTransposes) {
-  for (const auto& [n, skew] : {std::pair{7, 0.0}, {7, 0.2}, {2, 0.0}, {2, 0.2}}) {  // of 2: some ranks have nothing
+  for (const auto& [n, skew] : {std::pair{7, 0.0}, {7, 0.2}, {2, 0.0}, {2, 0.2}}) {  // n = 2: some ranks are empty
     const Truss truss(n, n > 2, skew);
     const bool symmetric = skew == 0;
     const Step step(*truss.matrix, truss.modes, symmetric);
@@ -162,7 +162,7 @@ TEST(Galerkin, MultipliesAndTransposes) {
     multigrid::product(coarse, c, at_once);
     for (LocalIndex I = 0; I < coarse.graph.n_rows(); ++I)
       for (int q = 0; q < 6; ++q) {
-        Real alone = 0;  // what a mode that the aggregate does not have adds: an entry on the diagonal
+        Real alone = 0;  // diagonal entry of modes that the aggregate does not have
         Real mode = 0;
         for (std::size_t i = 0; i < step.aggregates.of.size(); ++i)
           for (int k = 0; k < 3 && step.aggregates.of[i] == I; ++k)
@@ -182,7 +182,7 @@ TEST(Galerkin, MultipliesAndTransposes) {
   }
 }
 
-/// All numbers of all ranks, row by row.
+/// All values of all ranks, row by row.
 struct Dense {
   Dense(std::size_t rows_, std::size_t columns_) : rows(rows_), columns(columns_), value(rows_ * columns_, 0) {}
   template <class Matrix>
@@ -212,7 +212,7 @@ struct Dense {
   std::vector<Real> value;
 };
 
-/// A long bar, which is multiplied in several slices.
+/// Long bar, with a product in several slices.
 TEST(Galerkin, MultipliesInSlices) {
   for (const Real skew : {0.0, 0.2}) {
     const Truss truss(2, false, skew, 120);
@@ -227,7 +227,7 @@ TEST(Galerkin, MultipliesInSlices) {
   }
 }
 
-/// Every row that a slice names is in the buffer at its time, and in no other's place.
+/// Every row that a slice needs is in the buffer when needed, without overlap.
 TEST(Slices, HaveRoomForWhatTheyName) {
   const Truss truss(2, false, 0, 120);
   const Step step(*truss.matrix, truss.modes);
@@ -242,7 +242,7 @@ TEST(Slices, HaveRoomForWhatTheyName) {
   EXPECT_LT(slices.size, start(halo.n_all()) / (alone ? 4.0 : 0.99));
   ASSERT_EQ(slices.first.front(), 0);
   ASSERT_EQ(slices.first.back(), R.n_rows());
-  std::vector<LocalIndex> held(slices.size, -1);  // [place] its row
+  std::vector<LocalIndex> held(slices.size, -1);  // [position] row stored there
   const auto put = [&](LocalIndex row, std::size_t at) {
     for (std::size_t k = start(row); k < start(row + 1); ++k) held.at(at + k - start(row)) = row;
   };
@@ -264,7 +264,7 @@ TEST(Slices, HaveRoomForWhatTheyName) {
   }
 }
 
-/// One-sided couplings: R leaves out what has no place in it, and R A P is what it says.
+/// Unsymmetric graphs: R omits entries without a position in its graph, and the coarse matrix is still R A P.
 TEST(Galerkin, TakesGraphsThatAreNotSymmetric) {
   const auto comm = Tpetra::getDefaultComm();
   const auto map = rcp(new Map(30, 0, comm));

@@ -11,7 +11,7 @@
 namespace sprekk::test {
 namespace {
 
-/// Trilinear elements of the Laplacian in cells 1 x 1 x h, on [n, n, n] nodes, with a little of the identity.
+/// Trilinear elements of the Laplacian in cells 1 x 1 x h, on [n, n, n] nodes, plus a small multiple of the identity.
 struct FlatCells {
   explicit FlatCells(int n, Real h = 0.1) : map(rcp(new Map(n * n * n, 0, Tpetra::getDefaultComm()))) {
     matrix = rcp(new CrsMatrix(map, 27));
@@ -36,7 +36,7 @@ struct FlatCells {
   RCP<MultiVector> places;
 };
 
-/// S = S^T, and S damps what multigrid cannot: on the upper part of the spectrum 1 - S A is small.
+/// The smoother S is symmetric and reduces high-frequency errors: 1 - S A is small on the upper part of the spectrum.
 TEST(Chebyshev, IsSymmetricAndSmooths) {
   const Truss truss(8, true);
   const auto A = multigrid::node_matrix(*truss.matrix, 3);
@@ -49,7 +49,7 @@ TEST(Chebyshev, IsSymmetricAndSmooths) {
   const std::size_t n = 3 * A.graph.n_rows();
   EXPECT_NEAR(dot(Sx, y, n), dot(x, Sy, n), 1e-12 * std::sqrt(dot(Sx, Sx, n) * dot(y, y, n)));
 
-  const auto e = zeros(n_all, 3), r = zeros(n_all, 3);  // neighbours move against each other
+  const auto e = zeros(n_all, 3), r = zeros(n_all, 3);  // neighbours with opposite signs
   for (LocalIndex i = 0; i < A.graph.n_rows(); ++i) {
     const auto p = truss.place(A.graph.columns->owned()->getGlobalElement(i));
     for (int k = 0; k < 3 && p[0] > 0; ++k) e(3 * i + k) = (p[0] + p[1] + p[2]) % 2 ? 1 : -1;
@@ -62,7 +62,7 @@ TEST(Chebyshev, IsSymmetricAndSmooths) {
   EXPECT_LT(std::sqrt(dot(e, e, n) / before), 0.15);
 }
 
-/// The error's factor in an iteration x += M (b - A x), by the power method.
+/// Returns the contraction of the error per iteration x += M (b - A x), by the power method.
 Real contraction(const CrsMatrix& A, multigrid::Multigrid& M) {
   Vector e(A.getRowMap()), r(A.getRowMap()), correction(A.getRowMap());
   e.randomize(-1, 1);
@@ -89,7 +89,7 @@ TEST(Multigrid, ContractsAlikeOnAllSizesAndRanks) {
   }
 }
 
-/// With aggregates of more than a node's neighbours.
+/// Aggregates contain more than the neighbours of a node.
 TEST(Multigrid, ContractsWhereNodesHaveFewNeighbours) {
   for (const int n : {9, 15, 21}) {
     const Truss truss(n, true, 0, 0, true);
@@ -100,8 +100,8 @@ TEST(Multigrid, ContractsWhereNodesHaveFewNeighbours) {
   }
 }
 
-/// Trilinear elements of the Laplacian in layers of cells 1 x 1 x h that lie on each other, [n, n, 3] nodes each, with
-/// a little of the identity. Closed contact of the layers resists the mean jump on each face, as stiffly as cells.
+/// Trilinear elements of the Laplacian in stacked layers of cells 1 x 1 x h with [n, n, 3] nodes each, plus a small
+/// multiple of the identity. Closed contact resists the mean jump of each face, with the stiffness of cells.
 struct Layers {
   Layers(int n_, Real h) : n(n_), map(rcp(new Map(3 * n * n * n_layers, 0, Tpetra::getDefaultComm()))) {
     bulk = rcp(new CrsMatrix(map, 128));
@@ -159,7 +159,7 @@ struct Layers {
   RCP<MultiVector> places, ones;
 };
 
-/// Of conjugate gradients, to a residual of 1e-8.
+/// Returns the iterations of conjugate gradients to a residual of 1e-8.
 int iterations(const CrsMatrix& A, const multigrid::Multigrid& M) {
   Vector x(A.getRowMap()), r(A.getRowMap()), z(A.getRowMap()), p(A.getRowMap()), Ap(A.getRowMap());
   for (std::size_t i = 0; i < r.getLocalLength(); ++i)
@@ -178,7 +178,7 @@ int iterations(const CrsMatrix& A, const multigrid::Multigrid& M) {
   }
 }
 
-/// Contact of flat cells does not resist jumps that alternate along their long edges.
+/// Contact of flat cells does not resist jumps that alternate along the long edges.
 TEST(Multigrid, TakesFewIterationsWhereFlatCellsAreInContact) {
   const int most = Tpetra::getDefaultComm()->getSize() == 1 ? 15 : 20;
   for (const Real h : {1.0, 0.1, 0.01}) {
@@ -191,7 +191,7 @@ TEST(Multigrid, TakesFewIterationsWhereFlatCellsAreInContact) {
   }
 }
 
-/// Only contact out of reach is weak, that of flat cells; without it, and without contact, all is as it was.
+/// Contact is weak only between flat cells that are out of reach. In all other cases the graph is unchanged.
 TEST(Aggregates, LeaveOutContactOfFlatCellsOnly) {
   for (const Real h : {1.0, 0.01}) {
     const Layers layers(6, h);
@@ -209,7 +209,7 @@ TEST(Aggregates, LeaveOutContactOfFlatCellsOnly) {
   }
 }
 
-/// The same matrix with the unknowns of a node together, or apart as far as `together` says for this rank.
+/// Returns the same matrix, stored in blocks of nodes on ranks with `together`, else by unknowns.
 RCP<const fields::Matrix> in_nodes(const CrsMatrix& A, bool together) {
   const auto local = A.getLocalMatrixHost();
   const View<std::size_t*> start("start", local.numRows() + 1);
@@ -223,7 +223,7 @@ RCP<const fields::Matrix> in_nodes(const CrsMatrix& A, bool together) {
   return matrix;
 }
 
-/// However the matrix is stored, and if only some ranks have the unknowns of a node together.
+/// The result does not depend on the storage of the matrix, also if only some ranks store blocks of nodes.
 TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
   const Truss truss(9, true);
   const int rank = truss.map->getComm()->getRank();
@@ -243,8 +243,8 @@ TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
   }
 }
 
-/// Flat cells are coarsened across their short edges first: which are those, the places tell. Of four ranks each has
-/// four nodes of a column, which make two aggregates.
+/// Flat cells are coarsened across their short edges first, which are found by the coordinates. On four ranks, each
+/// rank has four nodes of a column, which form two aggregates.
 TEST(Multigrid, ContractsInFlatCells) {
   const FlatCells cells(16);
   const auto with = [&](const RCP<MultiVector>& places) {
@@ -257,7 +257,7 @@ TEST(Multigrid, ContractsInFlatCells) {
   EXPECT_GT(with(Teuchos::null), 0.7);
 }
 
-/// The way of matrices that are not symmetric leads to about the same for those that are: R is rounded more often.
+/// On symmetric matrices, the algorithm for unsymmetric ones gives almost the same result; it rounds R more often.
 TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
   const Truss truss(13, true);
   Vector b(truss.map), y(truss.map), z(truss.map);
@@ -271,7 +271,7 @@ TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
   EXPECT_LT(z.normInf(), 1e-6 * y.normInf());
 }
 
-/// Eigenvalues far off the real axis: the smoother takes a wider interval rather than enlarge what belongs to them.
+/// Eigenvalues far from the real axis: the smoother extends its interval so that it does not amplify their components.
 TEST(Multigrid, StaysBoundedWhereTheMatrixIsFarFromSymmetric) {
   for (const Real skew : {1.0, 3.0}) {
     const Truss truss(9, true, skew);
@@ -285,11 +285,11 @@ TEST(Multigrid, StaysBoundedWhereTheMatrixIsFarFromSymmetric) {
     M.apply(b, Mb, Teuchos::NO_TRANS, 1, 0);
     truss.matrix->apply(Mb, r);
     r.update(1, b, -1);
-    EXPECT_LT(r.norm2() / b.norm2(), 20) << skew;  // the set-up tries another vector, and allows 5
+    EXPECT_LT(r.norm2() / b.norm2(), 20) << skew;  // the set-up tests another vector, with the limit 5
   }
 }
 
-/// No unknown couples to another: multigrid is its smoother.
+/// Without couplings between unknowns, multigrid consists of its smoother.
 TEST(Multigrid, NeedsNoCoarseNodes) {
   const auto map = rcp(new Map(2000, 0, Tpetra::getDefaultComm()));
   const auto matrix = rcp(new CrsMatrix(map, 1));
@@ -308,7 +308,7 @@ TEST(Multigrid, NeedsNoCoarseNodes) {
   EXPECT_LT(r.norm2(), 0.2 * b.norm2());
 }
 
-/// Another matrix with the same graph takes the place of the first; one with another graph is refused.
+/// A matrix with the same graph replaces the first; a matrix with another graph is refused.
 TEST(Multigrid, TakesOtherMatricesOfTheSameGraph) {
   const Truss truss(9, true), other(9, true, 0.01), larger(10, true);
   Vector b(truss.map), x(truss.map), y(truss.map);
@@ -325,7 +325,8 @@ TEST(Multigrid, TakesOtherMatricesOfTheSameGraph) {
   EXPECT_THROW(M.setup(wrapped(larger.matrix), true), Error);
 }
 
-/// alpha M b + beta y of two vectors at once, linear to rounding; other values on the same graph.
+/// Applies alpha M b + beta y to two vectors at once; checks linearity up to round-off, and new values on the same
+/// graph.
 TEST(Multigrid, IsALinearOperatorAndFollowsTheMatrix) {
   const Truss truss(9, true);
   multigrid::Multigrid M(wrapped(truss.matrix), *wrapped(truss.matrix), 3, truss.modes);

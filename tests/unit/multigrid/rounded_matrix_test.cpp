@@ -1,4 +1,4 @@
-// Matrices in two bytes a number: how far they are off, on any processor, and that symmetry stays.
+// Matrices with two bytes per number: rounding errors, independence of the processor, and symmetry.
 #include "multigrid/rounded_matrix.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -15,11 +15,11 @@ using fields::Map;
 using multigrid::NodeMatrix;
 using multigrid::RoundedMatrix;
 
-constexpr LocalIndex n = 41;  // nodes of a rank
+constexpr LocalIndex n = 41;  // nodes per rank
 
 Real number(std::size_t i, std::size_t j) { return std::cos(1.0 + 7 * i + 13 * j + i * j); }
 
-/// Without ghosts; row i couples to (i + 1) % 7 nodes, so some to none, and the last to six.
+/// Matrix without ghosts. Row i couples to (i + 1) % 7 nodes: some rows to none, the last row to six.
 template <int b>
 NodeMatrix some_matrix() {
   const auto map = rcp(new Map(n * Tpetra::getDefaultComm()->getSize(), n, 0, Tpetra::getDefaultComm()));
@@ -50,11 +50,12 @@ View<Real*> product(const RoundedMatrix& A, const View<Real*>& x, bool wide) {
   return y;
 }
 
-/// Half of a unit of each row times the sum of |x|, in the instructions that every processor has and in others.
+/// Checks products to half a rounding unit per row times the sum of |x|, with common and with wide instructions of the
+/// processor.
 template <int b>
 void expect_near_products() {
   const auto A = some_matrix<b>();
-  const LocalIndex larger = 3;  // than 1 are some numbers of this node's rows
+  const LocalIndex larger = 3;  // this node's rows have values above 1
   for (std::size_t k = A.graph.start(larger); k < A.graph.start(larger + 1); ++k) A.value(b * b * k) *= 50;
   const auto scale = vector_of(b * n, 2), x = vector_of(b * n, 3);
   for (std::size_t i = 0; i < scale.extent(0); ++i) scale(i) = 0.5 + std::fabs(scale(i)) / 2;
@@ -86,7 +87,7 @@ TEST(RoundedMatrix, MultipliesToHalfAUnit) {
   expect_near_products<6>();
 }
 
-/// Halves and thirds, of which the last bit differs in the two triangles.
+/// Halves and thirds that differ between the two triangles in the last bit.
 TEST(RoundedMatrix, StaysSymmetric) {
   const auto map = rcp(new Map(3 * Tpetra::getDefaultComm()->getSize(), 3, 0, Tpetra::getDefaultComm()));
   NodeMatrix A{
@@ -117,7 +118,7 @@ TEST(RoundedMatrix, StaysSymmetric) {
   EXPECT_NE(found[0][1], 0);
 }
 
-/// What failed must not look like a matrix.
+/// Values that are not finite stay so.
 TEST(RoundedMatrix, WhatIsNoNumberStaysNone) {
   const auto A = some_matrix<3>();
   const View<Real*> one("one", 3 * n);

@@ -1,5 +1,4 @@
-// What Newton does where its own step does not help: damping, motions that nothing resists, and what it says in the
-// end.
+// Newton's method when its step does not help: damping, floating blocks, and final messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +17,7 @@ ScalarProblem linear(Real slope_far, Real slope_near) {
           [=](Real x, Real, Real) { return std::abs(x) > 0.6 ? slope_far : slope_near; }};
 }
 
-/// f = x with a derivative that is wrong below 0.6: from 0.5 the step leads away from the solution.
+/// f = x with a derivative of wrong sign below 0.6: from 0.5 the step leads away from the solution.
 TEST(Damping, HelpsWhereStepsLeadAway) {
   auto problem = linear(2, -1e-3);
   problem.resistance = 10;
@@ -27,7 +26,7 @@ TEST(Damping, HelpsWhereStepsLeadAway) {
   const auto report = newton.solve(x);
   ASSERT_TRUE(report.converged) << report.reason;
   EXPECT_LE(report.measures[0].value, 1e-11);
-  // the derivative itself comes first in every step: damping ends with the step that needed it
+  // Every step begins with the derivative itself: damping ends with the step that needed it.
   ASSERT_GE(problem.damps.size(), 5u);
   EXPECT_EQ(std::vector<Real>(problem.damps.begin(), problem.damps.begin() + 5),
             (std::vector<Real>{0, 0.1, 0, 0.1, 0}));
@@ -37,10 +36,11 @@ TEST(Damping, HelpsWhereStepsLeadAway) {
   EXPECT_EQ(problem.damps.front(), 0);
 }
 
-/// Tenfold as long as steps lead away; a tenth after a full step, then none.
+/// Damping increases tenfold while steps lead away; after a full step it decreases to a tenth, then to zero.
 TEST(Damping, GrowsAsFarAsNeededAndFalls) {
   auto problem = linear(2, -0.5);
-  problem.resistance = 1.4;  // -0.36 still leads away, 0.9 leads near the solution
+  problem.resistance = 1.4;  // with damping 0.1 (slope -0.36) the step still leads away; with 1 (slope 0.9) it leads
+                             // near the solution
   Newton newton(problem, {});
   auto x = problem.constant(1);
   const auto report = newton.solve(x);
@@ -71,7 +71,8 @@ TEST(Damping, RescuesASingularMatrix) {
   EXPECT_NEAR(x[0]->normInf(), 0, 1e-12);
 }
 
-/// The only step is damped, with the derivative 1; where it ends, that is 2, which a commit changes.
+/// The only step is damped, with the derivative 1. The derivative at its end is 2; the linearised solve uses this
+/// value.
 TEST(Damping, IsNoPartOfAnswers) {
   Real near = 2;
   ScalarProblem problem(
@@ -88,8 +89,8 @@ TEST(Damping, IsNoPartOfAnswers) {
   for (std::size_t i = 0; i < answer[0]->getLocalLength(); ++i) EXPECT_NEAR(answer[0]->getData()[i], 0.5, 1e-12);
 }
 
-/// Full steps to -0.9 of where they start: the states change in each. With the damping of the third the derivative is
-/// that of f.
+/// Full steps lead to -0.9 of the start, so the states change in each step. With the damping of the third step the
+/// derivative is exact.
 TEST(Damping, OfStatesThatGoToAndFro) {
   auto problem = linear(1 / 1.9, 1 / 1.9);
   problem.resistance = (1 - 1 / 1.9) / 0.3;
@@ -105,7 +106,7 @@ TEST(Damping, OfStatesThatGoToAndFro) {
   EXPECT_EQ(problem.damps, (std::vector<Real>{0, 0.3, 0}));
 }
 
-/// The merit falls by 0.998 in each step.
+/// The merit decreases by a factor of 0.998 per step.
 TEST(Newton, EndsWithoutProgress) {
   auto problem = linear(1 / 1.999, 1 / 1.999);
   Newton newton(problem, {});
@@ -127,8 +128,8 @@ TEST(Damping, SaysWhereNothingHelps) {
   for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_EQ(x[0]->getData()[i], 0.5);  // the last iterate
 }
 
-/// From 0 to the solution 5 the way leads over 3, where the merit is four thousand times as large; it is taken where
-/// the state is another one there.
+/// From 0, the path to the solution 5 leads over 3, where the merit is four thousand times as large. The step is
+/// accepted if the contact state at 3 is different.
 TEST(Damping, SearchBeginsAnewInOtherStates) {
   const auto region = [](Real x) { return x < -1 ? 0 : x < 1e-4 ? 1 : 2; };
   for (const bool states : {true, false}) {
@@ -145,7 +146,7 @@ TEST(Damping, SearchBeginsAnewInOtherStates) {
   }
 }
 
-/// exp(-x) falls for ever: each step is one further.
+/// exp(-x) decreases without a zero: each step increases x by one.
 TEST(FreeBodies, ThatFindNoResistanceEndNewton) {
   ScalarProblem problem(
       Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return std::exp(-x); },
@@ -168,7 +169,7 @@ TEST(FreeBodies, ThatFindNoResistanceEndNewton) {
                                   "and nothing holds it; t = "));
 }
 
-/// A body that is free but in equilibrium is named, and is no failure.
+/// A floating body in equilibrium is reported, without failure.
 TEST(FreeBodies, InEquilibriumAreReported) {
   auto problem = linear(1, 1);
   problem.free_body = "a stone";

@@ -20,7 +20,7 @@ std::vector<Real> some_values(std::size_t n) {
   return values;
 }
 
-/// A row with the unknowns 8, 9, 0, 1, in this order.
+/// Row with the unknowns 8, 9, 0, 1, in this order.
 TEST(RowCursor, FindsWhatARowHasAndCountsWhatItHasNot) {
   fields::NodeRows numbers{.height = 1, .width = 2};
   numbers.start = View<std::size_t*>("start", 2);
@@ -41,7 +41,7 @@ TEST(RowCursor, FindsWhatARowHasAndCountsWhatItHasNot) {
   EXPECT_THROW(solve::check_found(cursor.n_missing), Error);
 }
 
-/// A state with open and closed faces.
+/// Returns a state with open and closed faces.
 BlockVector mixed_state(const GridProblem& problem) {
   auto x = problem.zero();
   scatter(some_values(gather(x).size()), x);
@@ -71,7 +71,7 @@ TEST(LocalElimination, SolvesTheFullSystem3D) {
   expect_equal_solutions(options);
 }
 
-/// Numbers that couple a row with an entity follow one another.
+/// Entries that couple a row with an entity are contiguous.
 TEST(LocalElimination, SolvesTheFullSystemWhereComponentsMix) {
   for (const int d : {2, 3}) {
     GridOptions options;
@@ -111,7 +111,8 @@ TEST(LocalElimination, CondensedMatrixIsSymmetricWithZeroedConstraints) {
     });
 }
 
-/// The solution is that of the dense matrix with it; other entries of the condensed matrix keep every bit.
+/// The solution equals that of the dense matrix with the added diagonal. Other entries of the condensed matrix are
+/// bitwise equal.
 TEST(LocalElimination, AddsTheProximalDiagonalAndNothingElse) {
   for (int d : {2, 3}) {
     GridOptions options;
@@ -146,7 +147,7 @@ TEST(LocalElimination, AddsTheProximalDiagonalAndNothingElse) {
     const auto added = gather(*diagonal);
     for (std::size_t i = 0; i < added.size(); ++i)
       if (i / d % (options.nx * options.ny) >= std::size_t(options.nx) && i / d < added.size() / d - options.nx)
-        matrix[i][i] += added[i];  // neither in the fixed nor in the moved row
+        matrix[i][i] += added[i];  // except the fixed and the moved row
     const auto exact = solve_dense(matrix, {values.begin(), values.end()});
     const auto found = gather(x);
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], exact[i], 1e-11) << "unknown " << i;
@@ -166,8 +167,8 @@ std::vector<Real> bulk_of(const LocalElimination& elimination) {
   return values;
 }
 
-/// What two eliminations, and the problem itself, see of a matrix that stands in theirs is what a problem sees that
-/// keeps its own, bit by bit, while more and more rows differ.
+/// Two eliminations that share the matrix of the problem, and the problem itself, see the same values as a problem
+/// with its own matrix. Values are bitwise equal, while more and more rows differ.
 TEST(LocalElimination, TakesThePlaceOfTheMatrix) {
   GridOptions options;
   options.ny = 12;
@@ -215,7 +216,8 @@ TEST(LocalElimination, TakesThePlaceOfTheMatrix) {
       }
       kept.push_back(n_kept());
     }
-    const GlobalIndex n = diagonal->getGlobalLength(), row = d * options.nx;  // 4 at the ends, 3 around faces
+    const GlobalIndex n = diagonal->getGlobalLength(), row = d * options.nx;  // 4 rows of nodes at the ends, 3 around
+                                                                              // the faces
     EXPECT_EQ(kept, (std::vector<GlobalIndex>{3 * row, 7 * row, 7 * row, n, n}));
   }
 }
@@ -245,14 +247,15 @@ TEST(LocalElimination, NamesASingularEntity) {
   const auto report = solve.solve(x, dx, 1e-10);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.reason, "local group 'contact': the matrix of entity 3 is singular");
-  x[2]->putScalar(-1);  // closed: regular, and the solver recovers
+  x[2]->putScalar(-1);  // closed: regular, so the solver recovers
   problem.jacobian(x);
   solve.update();
   EXPECT_TRUE(solve.solve(x, dx, 1e-10).converged);
 }
 
 TEST(SmallLu, TinyComponentsAreAccurate) {
-  // rows: two balances with bubble stiffness 1e10, two laws; normal (0, 2) and tangential (1, 3) do not couple
+  // Rows: two balances with bubble stiffness 1e10, two laws. Normal (0, 2) and tangential (1, 3) unknowns are
+  // uncoupled.
   const int m = 4;
   const Real a[m * m] = {1e10, 0, 0.3, 0, 0, 2e10, 0, 0.7, -3e9, 0, 1e-1, 0, 0, -7e9, 0, 1};
   const Real b[m] = {1e7, 1e-4, -2e7, 3e-5};

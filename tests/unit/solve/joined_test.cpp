@@ -1,4 +1,4 @@
-// Blocks as one: the operator and the matrix say the same.
+// Several blocks as one: operator and matrix are equal.
 #include "solve/joined.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -16,7 +16,8 @@ using fields::Map;
 using fields::Vector;
 using fields::wrapped;
 
-/// Two blocks of 9 and 4 unknowns per rank, or others, that couple, within and across ranks; in nodes of one size.
+/// Two coupled blocks, by default of 9 and 4 unknowns per rank, with couplings within and across ranks; nodes of one
+/// size.
 struct Pair {
   explicit Pair(std::array<GlobalIndex, 2> n_unknowns = {9, 4}, int size = 1) {
     const auto comm = Tpetra::getDefaultComm();
@@ -81,7 +82,7 @@ TEST(Joined, MatrixIsTheOperator) {
     x.replaceLocalValue(i, std::sin(1 + x.getMap()->getGlobalElement(i)));
   EXPECT_LT(apply_both_and_compare(*matrix.matrix(), *joined_operator(pair.joined, pair.blocks), x), 1e-14);
 
-  // and it is S A S: gather multiplies by S
+  // The matrix is S A S: gather multiplies by S.
   fields::BlockVector parts = {rcp(new Vector(pair.maps[0])), rcp(new Vector(pair.maps[1]))}, products = parts;
   products = fields::create_like(parts);
   for (auto& part : parts) part->putScalar(1);
@@ -98,7 +99,7 @@ TEST(Joined, MatrixIsTheOperator) {
   EXPECT_LT(s_as.normInf(), 1e-14);
 }
 
-/// In blocks of 3 x 3, its rows are those of the operator, too; each node has one index.
+/// In blocks of 3 x 3, too, the rows equal those of the operator; each node has one index.
 TEST(Joined, OfNodesAlikeIsAMatrixOfNodes) {
   const Pair pair({9, 6}, 3);
   ASSERT_EQ(pair.blocks[1]->numbers().width, 3);

@@ -18,7 +18,7 @@ solve::LinearSystem system_of(const RCP<CrsMatrix>& matrix, const Block& block, 
   return {joined, {wrapped(matrix)}, symmetric, {{block, wrapped(matrix), {}}}, matrix};
 }
 
-/// Builds A x = b with a known x and solves it.
+/// Builds A x = b with a known x and checks the solution.
 void expect_solved(const RCP<CrsMatrix>& matrix, const Block& block, bool symmetric, solve::LinearSolver& solver) {
   ASSERT_EQ(solver.setup(system_of(matrix, block, symmetric)), "");
   for (int again = 0; again < 2; ++again) {
@@ -38,7 +38,7 @@ void expect_solved(const RCP<CrsMatrix>& matrix, const Block& block, bool symmet
   }
 }
 
-/// The constrained grid as one matrix.
+/// Constrained grid as one matrix.
 struct Grid {
   explicit Grid(int n, int d = 2) : problem(Tpetra::getDefaultComm(), {d, n, n, false, true, -1}) {
     solve::LocalElimination elimination(problem);
@@ -94,8 +94,8 @@ TEST(DirectSolver, ReportsASingularMatrix) {
   }
 }
 
-/// Where MUMPS replaces small pivots, by 5 for 2 here, factors are those of another matrix: refinement gains a third
-/// each time, GMRES has as many steps to go as there are such pivots, and one more.
+/// MUMPS replaces the small pivots 2 by 5: the factors are of another matrix. Refinement reduces the error to a third
+/// per step. GMRES needs one step per replaced pivot, and one more.
 TEST(DirectSolver, SolvesWithFactorsOfAnotherMatrix) {
   constexpr int n = 40, n_small = 5;
   const auto map = rcp(new fields::Map(n, 0, Tpetra::getDefaultComm()));
@@ -132,7 +132,7 @@ TEST(IterativeSolver, SolvesSymmetricAndUnsymmetric) {
   }
 }
 
-/// Its set-up raises the diagonal for a while.
+/// The set-up temporarily increases the diagonal.
 TEST(IterativeSolver, LeavesTheMatrixAsItWas) {
   Grid grid(48);
   const auto values = grid.matrix->getLocalMatrixHost().values;
@@ -155,7 +155,8 @@ TEST(IterativeSolver, NeedsFewIterationsAtAnySize) {
   }
 }
 
-/// Diagonals of so many first rows of each rank are raised by a half; the number of multigrids made till then.
+/// Returns the number of multigrid set-ups if the diagonal of the first `n_changed` rows of each rank increases by
+/// half.
 int setups_after(LocalIndex n_changed) {
   Grid grid(48);
   const auto& block = grid.problem.blocks()[0];
@@ -180,7 +181,7 @@ TEST(IterativeSolver, KeepsMultigridWhileFewRowsChange) {
   EXPECT_EQ(setups_after(40), 2);
 }
 
-/// Krylov's space then has a single vector.
+/// The Krylov space has one vector.
 TEST(IterativeSolver, SolvesWhatItsPreconditionerInverts) {
   const int n = 2000;
   const auto map = rcp(new Map(n, 0, Tpetra::getDefaultComm()));
@@ -202,7 +203,7 @@ TEST(IterativeSolver, SolvesWhatItsPreconditionerInverts) {
   }
 }
 
-/// Of matrices that are not symmetric, multigrid is made again, with a look at its cycles, only where a solve is long.
+/// For unsymmetric matrices, multigrid is set up again with a test of its cycles only after a long solve.
 TEST(IterativeSolver, LooksAtMultigridOnceASolveIsLong) {
   for (const Real skew : {0.0, 0.3}) {
     const Truss truss(11, true, skew);
@@ -254,7 +255,7 @@ TEST(IterativeSolver, AggregatesByTheBulkAndSolvesContact) {
   options.type = "iterative";
   CondensedSolve solve(problem, options);
   auto x = problem.zero(), b = problem.zero(), dx = problem.zero(), r = problem.zero();
-  for (Real state : {1.0, -1.0, 1.0}) {  // all open, closed, open again on the same hierarchy
+  for (Real state : {1.0, -1.0, 1.0}) {  // all open, closed, open again with the same hierarchy
     x[2]->putScalar(state);
     problem.jacobian(x);
     solve.update();
@@ -272,7 +273,7 @@ TEST(IterativeSolver, AggregatesByTheBulkAndSolvesContact) {
   EXPECT_EQ(solve.n_setups(), 3);
 }
 
-/// Face unknowns that are not eliminated: the same solution as with elimination, in units that differ by much.
+/// Face unknowns that are not eliminated: the solution equals that with elimination, for very different units.
 TEST(CondensedSolve, SolvesForSeveralBlocksAtOnce) {
   const auto comm = Tpetra::getDefaultComm();
   GridProblem eliminated(comm, {2, 40, 40, true, true, -1});
@@ -292,7 +293,7 @@ TEST(CondensedSolve, SolvesForSeveralBlocksAtOnce) {
       solve.update();
       ASSERT_TRUE(reference.solve(b, expected, 1e-12).converged);
       const auto report = solve.solve(b, dx, 1e-12);
-      if (type == "iterative" && state < 0) {  // closed: tractions do not couple with themselves
+      if (type == "iterative" && state < 0) {  // closed: tractions have a zero diagonal block
         EXPECT_FALSE(report.converged);
         EXPECT_NE(report.reason.find("block 'traction': its matrix has zeros"), std::string::npos) << report.reason;
         continue;
@@ -316,7 +317,7 @@ TEST(MakeLinearSolver, ChoosesBySizeAndSaysWhy) {
   options.direct_limit_2d = 71;
   const auto name = grid.problem.blocks()[0].name;
   options.preconditioner.blocks[name].multigrid.emplace().coarse_size =
-      20;  // or it would be of the size of a coarsest level
+      20;  // otherwise it would have the size of a coarsest level
   const auto chosen = make_linear_solver(options, grid.problem.blocks());
   EXPECT_EQ(chosen.reason, "iterative: 2D with 72 unknowns; direct up to 71");
   for (const auto& part : {name + " -> ", std::string("type = multigrid"), std::string("coarsest level = 20")})

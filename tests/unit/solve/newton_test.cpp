@@ -29,7 +29,7 @@ TEST(Newton, SolvesContact) {
     EXPECT_GE(report.iterations, 2);
     EXPECT_LE(report.iterations, 12);
     EXPECT_EQ(int(report.history.size()), report.iterations + 1);
-    // complementarity, checked without the residual; both states occur
+    // complementarity, checked independently of the residual; both states occur
     const auto w = problem.jump(*x[0]);
     int here[2] = {0, 0}, all[2];
     for (std::size_t i = 0; i < w->getLocalLength(); i += 2) {
@@ -49,7 +49,7 @@ TEST(Newton, SolvesContact) {
         EXPECT_DOUBLE_EQ(x[0]->getData()[i], g % 2 == 0 ? problem.top(g / 2 % 80) : 0);
       }
     }
-    // nothing to do the second time
+    // the second solve needs no iteration
     const auto again = newton.solve(x);
     EXPECT_TRUE(again.converged);
     EXPECT_EQ(again.iterations, 0);
@@ -57,7 +57,7 @@ TEST(Newton, SolvesContact) {
   }
 }
 
-/// x a(x)^3 = 1, a = max(x, 1e-3): a fluid that opens what it flows through. `lags`: it says that a is a coefficient.
+/// x a(x)^3 = 1, a = max(x, 1e-3): a fluid that opens its own flow path. With `lags`, a is a lagged coefficient.
 class OpeningProblem : public ScalarProblem {
  public:
   OpeningProblem(const RCP<const Comm>& comm, bool lags)
@@ -69,7 +69,7 @@ class OpeningProblem : public ScalarProblem {
             }),
         lags_(lags) {}
 
-  /// Relaxed as suits the slope of -3.
+  /// Updates a with a relaxation suited to the slope -3.
   Real lag(Lag how, const BlockVector& x) override {
     if (!lags_ || how == Lag::none) {
       given_ = 0;
@@ -122,7 +122,7 @@ TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
 }
 
 TEST(Newton, LineSearchSavesWhatFullStepsLose) {
-  // full steps of atan from 3 alternate with growing size
+  // Full Newton steps for atan from 3 alternate in sign and grow.
   ScalarProblem problem(
       Tpetra::getDefaultComm(), 5, [](Real x, Real, Real) { return std::atan(x); },
       [](Real x, Real, Real) { return 1 / (1 + x * x); });
@@ -157,7 +157,7 @@ TEST(Newton, ReportsASingularJacobian) {
   const auto report = newton.solve(x);
   EXPECT_FALSE(report.converged);
   EXPECT_NE(report.reason.find("singular"), std::string::npos) << report.reason;
-  EXPECT_EQ(report.iterations, 4);  // one, and three with damping, which changes nothing here
+  EXPECT_EQ(report.iterations, 4);  // one, and three with damping, which has no effect here
 }
 
 TEST(Newton, ReportsWhatIsNotANumber) {
@@ -236,7 +236,7 @@ TEST(ThyraModel, AppliesTheJacobianOfTheResidual) {
   for (std::size_t i = 0; i < product.size(); ++i) EXPECT_NEAR(product[i], (plus[i] - minus[i]) / 2e-6, 1e-7);
 }
 
-/// x = t for substeps up to `largest`; without a solution for longer ones.
+/// Returns the problem x = t for steps up to `largest`; longer steps have no solution.
 ScalarProblem impatient(Real largest) {
   return ScalarProblem(
       Tpetra::getDefaultComm(), 4, [largest](Real x, Real t, Real dt) { return dt <= largest ? x - t : 1 + x * x; },
@@ -262,7 +262,7 @@ TEST(TimeStepper, CutsAndGrowsBack) {
   EXPECT_NEAR(x[0]->normInf(), 3, 1e-12);
 }
 
-/// A derivative of the wrong sign far from the solution 3, but for the tether's.
+/// Returns a problem whose derivative has the wrong sign far from the solution 3, without a tether.
 ScalarProblem misled() {
   return ScalarProblem(
       Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
@@ -302,7 +302,8 @@ TEST(TimeStepper, HalvesThreeTimesBeforeItTethersWhereShorterStepsAreEasier) {
   EXPECT_FALSE(problem.tethers.empty());
 }
 
-/// Directions that are twenty times too long: after the first, steps of 1/16 each make the error a quarter.
+/// Newton directions that are twenty times too long: after the first step, step lengths of 1/16 reduce the error to a
+/// quarter each.
 TEST(Newton, GivesUpShortStepsWhereShorterTimeStepsAreEasier) {
   for (const bool storing : {false, true}) {
     ScalarProblem problem(
@@ -316,7 +317,7 @@ TEST(Newton, GivesUpShortStepsWhereShorterTimeStepsAreEasier) {
   }
 }
 
-/// The same without contact: no iteration is spent on a problem that tethers leave as it is.
+/// The same problem without contact: no iteration is spent on tethers without effect.
 TEST(TimeStepper, DoesNotTetherWhereThereIsNoContact) {
   const auto iterations = [](bool tethers) {
     auto problem = misled();

@@ -1,5 +1,5 @@
-// Preconditioners of blocks and groups against the systems that they are about the inverse of, where what they leave to
-// multigrid is small enough to be solved directly.
+// Preconditioners of blocks and groups, compared with the systems that they invert approximately. The systems are so
+// small that multigrid solves its part directly.
 #include "solve/preconditioner.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -22,12 +22,12 @@ using solve::LinearSystem;
 using solve::make_preconditioner;
 using solve::PreconditionerOptions;
 
-/// A chain over all ranks: faces with a pressure each, cells between them, and nodes that move, as many as faces. Every
-/// row reads its neighbours; cells do not read each other.
+/// Chain over all ranks: faces with a pressure each, cells between them, and as many nodes with displacements as
+/// faces. Every row couples to its neighbours, except cells to cells.
 struct Chain {
   enum Which { nodes, faces, cells };
 
-  /// `order` of the blocks; without `back`, nodes do not read pressures.
+  /// `order` of the blocks; without `back`, rows of nodes do not couple to other blocks.
   Chain(const std::vector<Which>& order_, bool back, bool schur) : order(order_) {
     const auto comm = Tpetra::getDefaultComm();
     const GlobalIndex n = 5 * comm->getSize() + 2;
@@ -63,7 +63,8 @@ struct Chain {
     }
   }
 
-  /// Of faces and cells: the faces beside a cell, and back; of others, up to one place apart. No row is symmetric.
+  /// Returns a block: faces couple to the adjacent cells and vice versa; other pairs to neighbours at a distance of
+  /// one. The values are unsymmetric.
   RCP<const fields::Matrix> matrix(int r, int s) const {
     const auto result = rcp(new CrsMatrix(blocks[r].map, 3));
     const auto& rows = *blocks[r].map;
@@ -81,7 +82,7 @@ struct Chain {
     return wrapped(result);
   }
 
-  /// What the sweep is about the inverse of: with the Schur complements that are given.
+  /// Applies the operator that the sweep inverts approximately, with the given Schur complements.
   void apply(const Vector& x, Vector& y) const {
     system.joined_operator()->apply(x, y);
     for (std::size_t r = 0; r < order.size(); ++r) {
@@ -98,9 +99,9 @@ struct Chain {
   LinearSystem system;
 };
 
-constexpr Real rounding = 1e-6;  // multigrid raises the diagonal of its last matrix by 1e-8 of itself
+constexpr Real rounding = 1e-6;  // multigrid adds 1e-8 times the diagonal to its coarsest matrix
 
-/// y = the preconditioner's of x, once it is set up `times` times.
+/// Returns y = M x, with the preconditioner M after `times` set-ups.
 Vector swept(const Chain& chain, const Vector& x, const PreconditionerOptions& options = {}, int times = 2) {
   const auto preconditioner = make_preconditioner(options, chain.blocks);
   for (int k = 0; k < times; ++k) preconditioner->setup(chain.system);
@@ -116,12 +117,12 @@ Vector random_vector(const Chain& chain) {
   return x;
 }
 
-/// The largest of |y| among the unknowns of block r, over all ranks.
+/// Returns the largest |y| among the unknowns of block r, over all ranks. Collective.
 Real largest(const Chain& chain, const Vector& y, int r) {
   return y.offsetView(chain.system.joined->map(r), chain.system.joined->first(r))->getVector(0)->normInf();
 }
 
-/// The tree as a scene would write it.
+/// Returns the options as a parameter tree of a scene.
 Teuchos::ParameterList tree(const PreconditionerOptions& options, const std::vector<fields::Block>& blocks) {
   Teuchos::ParameterList list;
   make_preconditioner(options, blocks)->describe(list);
@@ -140,7 +141,7 @@ TEST(Preconditioner, GroupsBlocksWithWhatIsCondensedIntoThem) {
   EXPECT_EQ(list.sublist("cells").get<std::string>("with"), "faces");
 }
 
-/// The product by which cells are eliminated fits into the graph of the faces: nothing is left out.
+/// The Schur complement of the eliminated cells fits into the graph of the faces, so nothing is omitted.
 TEST(Preconditioner, OfACondensedPairIsTheInverseOfBothBlocks) {
   for (const bool schur : {false, true})
     for (const auto& order : {std::vector{Chain::faces, Chain::cells}, std::vector{Chain::cells, Chain::faces}}) {
@@ -154,7 +155,7 @@ TEST(Preconditioner, OfACondensedPairIsTheInverseOfBothBlocks) {
     }
 }
 
-/// Where nodes do not read pressures, one sweep is the inverse.
+/// If rows of nodes do not couple to pressures, one sweep is the exact inverse.
 TEST(Preconditioner, SweepIsTheInverseOfATriangularSystem) {
   const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, false, false);
   const auto x = random_vector(chain);
@@ -165,7 +166,7 @@ TEST(Preconditioner, SweepIsTheInverseOfATriangularSystem) {
   EXPECT_LT(back.normInf(), rounding);
 }
 
-/// Rows of the last group are in balance, those of the first with its own unknowns alone.
+/// The rows of the last group are satisfied; those of the first group only without couplings to later groups.
 TEST(Preconditioner, SweepSolvesOneGroupAfterTheOther) {
   const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, true, false),
       triangular({Chain::nodes, Chain::faces, Chain::cells}, false, false);
@@ -194,7 +195,7 @@ TEST(Preconditioner, SweepAddsToWhatIsThere) {
   EXPECT_LT(y.normInf(), 1e-13 * once.normInf());
 }
 
-/// B_f of all blocks, each a group of its own or two together, solved directly: (S A S)_ff^-1.
+/// Returns options with a direct solver for each of the blocks: B_f = (S A S)_ff^-1.
 PreconditionerOptions direct(const std::vector<std::string>& blocks) {
   PreconditionerOptions options;
   for (const auto& name : blocks) options.blocks[name].type = "direct";
@@ -205,7 +206,7 @@ RCP<MultiVector> part(const Chain& chain, Vector& x, int r) {
   return x.offsetViewNonConst(chain.system.joined->map(r), chain.system.joined->first(r));
 }
 
-/// x - A y in the rows of block r.
+/// Returns the largest |x - A y| in the rows of block r.
 Real residual(const Chain& chain, const Vector& x, const Vector& y, int r) {
   Vector rest(x.getMap());
   chain.apply(y, rest);
@@ -222,7 +223,7 @@ TEST(Preconditioner, DirectGroupIsTheInverse) {
   for (const int r : {0, 1, 2}) EXPECT_LT(residual(chain, x, y, r), 1e-9);
 }
 
-/// Each block's rows are in balance with its own unknowns alone.
+/// The rows of each block are satisfied with its own unknowns only.
 TEST(Preconditioner, DiagonalSweepSeesNoOtherGroup) {
   const Chain chain({Chain::nodes, Chain::faces}, true, false);
   auto options = direct({"nodes", "faces"});
@@ -238,8 +239,8 @@ TEST(Preconditioner, DiagonalSweepSeesNoOtherGroup) {
   EXPECT_GT(residual(chain, x, y, 0), 1e-3);
 }
 
-/// The group that comes last is in balance: the second of a forward sweep, the first of one backward or in the other
-/// order; and symmetric sweeps leave less of the other, too.
+/// The group solved last is satisfied: the second of a forward sweep, the first of a reversed sweep. Symmetric sweeps
+/// also reduce the residual of the other group.
 TEST(Preconditioner, SweepsGoAsAskedFor) {
   const Chain chain({Chain::nodes, Chain::faces}, true, false);
   auto forward = direct({"nodes", "faces"}), reversed = forward, symmetric = forward;
@@ -255,7 +256,7 @@ TEST(Preconditioner, SweepsGoAsAskedFor) {
   EXPECT_LT(residual(chain, x, both, 1), residual(chain, x, of_reversed, 1));
 }
 
-/// Without dropping, the factors of ILUT on one rank are exact; on several they leave out couplings of ranks.
+/// Without dropping, the factors of ILUT are exact on one rank; on several ranks they omit couplings between ranks.
 TEST(Preconditioner, Ifpack2TakesItsParameters) {
   const Chain chain({Chain::nodes, Chain::faces}, false, false);
   const auto x = random_vector(chain);
@@ -275,8 +276,8 @@ TEST(Preconditioner, Ifpack2TakesItsParameters) {
   }
 }
 
-/// Upwind advection, conduction and a little storage on a square of cells: the flow, 1e4 times what is conducted in
-/// places, goes around in eddies of random streamfunctions, large and small.
+/// Upwind advection, conduction and small storage on a square of cells. The flow is locally 1e4 times the conductance
+/// and consists of large and small eddies of random stream functions.
 RCP<CrsMatrix> advection(const RCP<const Map>& map, int n) {
   const auto eddy = [](int i, int j) { return std::sin(12.9898 * i + 78.233 * j + 3 * std::sin(0.3 * i * j)); };
   const auto psi = [&](int i, int j) {
@@ -304,7 +305,7 @@ RCP<CrsMatrix> advection(const RCP<const Map>& map, int n) {
   return result;
 }
 
-/// One unknown of each cell of a square.
+/// Returns a block with one unknown for each cell of a square.
 fields::Block of_cells(const std::string& name, int n) {
   fields::Block block;
   block.name = name;
@@ -320,7 +321,7 @@ fields::Block of_cells(const std::string& name, int n) {
   return block;
 }
 
-/// Of what a flow carries: cycles do not grow, however strong the flow is.
+/// Advected quantities: multigrid cycles do not diverge for strong flow.
 TEST(Preconditioner, CyclesOfAdvectedBlocksConverge) {
   const int n = 100;
   auto block = of_cells("temperature", n);
@@ -340,7 +341,7 @@ TEST(Preconditioner, CyclesOfAdvectedBlocksConverge) {
   EXPECT_LT(e.norm2(), 0.1 * start);
 }
 
-/// Conduction between cells of a square, a little of it lost; a conductance of two cells is the harmonic mean.
+/// Conduction between cells of a square with small storage; the conductance between two cells is the harmonic mean.
 template <class Conductivity>
 RCP<CrsMatrix> conduction(const RCP<const Map>& map, int n, const Conductivity& of) {
   const auto result = rcp(new CrsMatrix(map, 5));
@@ -361,8 +362,8 @@ RCP<CrsMatrix> conduction(const RCP<const Map>& map, int n, const Conductivity& 
   return result;
 }
 
-/// Where a network of thin channels has closed in places, cells are grouped anew: a preconditioner that has known the
-/// open ones does what a new one does.
+/// After parts of a channel network close, cells are aggregated again. A preconditioner set up for open channels
+/// before is then as good as a new one.
 TEST(Preconditioner, FollowsWhatConducts) {
   const int n = 96;
   const auto block = of_cells("pressure", n);
@@ -388,11 +389,11 @@ TEST(Preconditioner, FollowsWhatConducts) {
     return e.norm2() / start;
   };
   const Real anew = left({now});
-  EXPECT_LT(anew, 0.2);  // with the groups of the open network it is 0.4
+  EXPECT_LT(anew, 0.2);  // 0.4 with the aggregates of the open network
   EXPECT_LT(left({open, now}), 1.01 * anew);
 }
 
-/// For any block: without places, and for several joined.
+/// Every type accepts any block: without coordinates, and several joined blocks.
 TEST(Preconditioner, EveryTypeTakesEveryBlock) {
   const Chain chain({Chain::nodes, Chain::faces, Chain::cells}, false, false);
   const auto x = random_vector(chain);

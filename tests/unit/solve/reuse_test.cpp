@@ -1,4 +1,4 @@
-// When a preconditioner is kept, given up and made anew.
+// Reuse of a preconditioner: kept, rejected, set up again.
 #include "solve/reuse.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ TEST(Reuse, KeepsWhatServesAndRenewsWhatIsWorn) {
   EXPECT_FALSE(reuse.may_keep());
   reuse.make(true);
   EXPECT_EQ(reuse.most_iterations(1e-8), 0);
-  reuse.learn(16, 1e-8, 1e-8);  // two iterations for a digit
+  reuse.learn(16, 1e-8, 1e-8);  // two iterations per digit
   ASSERT_TRUE(reuse.may_keep());
   reuse.keep();
   EXPECT_EQ(reuse.most_iterations(1e-4), 8 + Reuse::most_more);
@@ -25,7 +25,7 @@ TEST(Reuse, KeepsWhatServesAndRenewsWhatIsWorn) {
   EXPECT_EQ(reuse.state(), State::worn);
   EXPECT_TRUE(reuse.is_of_earlier_system());
   EXPECT_FALSE(reuse.may_keep());
-  reuse.learn(8, 1e-4, 1e-4);  // of another right-hand side
+  reuse.learn(8, 1e-4, 1e-4);  // for another right-hand side
   EXPECT_TRUE(reuse.may_keep());
   EXPECT_TRUE(reuse.gives_up(12, false));
   EXPECT_FALSE(reuse.is_careful());  // it was only too old
@@ -35,13 +35,13 @@ TEST(Reuse, IsCarefulOnceASolveWithUntriedCyclesIsLong) {
   Reuse reuse;
   reuse.make(false);
   EXPECT_EQ(reuse.most_iterations(1e-8), Reuse::most_unchecked);
-  EXPECT_FALSE(reuse.gives_up(Reuse::most_unchecked - 1, false));  // the library gave up before
+  EXPECT_FALSE(reuse.gives_up(Reuse::most_unchecked - 1, false));  // the library stopped before the limit
   EXPECT_FALSE(reuse.gives_up(Reuse::most_unchecked, true));
   EXPECT_FALSE(reuse.is_careful());
   EXPECT_TRUE(reuse.gives_up(Reuse::most_unchecked, false));
   EXPECT_TRUE(reuse.is_careful());
   reuse.make(true);
-  EXPECT_FALSE(reuse.gives_up(1000, false));  // nothing better is to be had
+  EXPECT_FALSE(reuse.gives_up(1000, false));  // no better preconditioner is available
 }
 
 TEST(Reuse, LearnsNothingFromSolvesThatGainLessThanADigit) {

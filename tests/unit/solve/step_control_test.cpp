@@ -10,7 +10,7 @@ namespace {
 
 using Verdict = StepControl::Verdict;
 
-/// The ends of all steps from 0, whose errors are error(t, dt) of that order.
+/// Returns the ends of all steps from 0, for the errors error(t, dt) of the given order.
 template <class Error>
 std::vector<Real> ends(StepControl control, Real end, const Error& error, Real order) {
   std::vector<Real> all;
@@ -35,7 +35,8 @@ TEST(StepControl, TakesStepsInverseToTheErrorToThePowerOfTheOrder) {
   }
 }
 
-/// A step takes five iterations however short it is, three are wanted, and one that is hard takes ten if it is long.
+/// First, each step takes five iterations at any length, with a target of three. Then, long steps take ten and short
+/// ones three.
 TEST(StepControl, DoesNotShortenStepsInVain) {
   StepControl control({.tolerance = {}, .iterations = 3, .first = 0.1, .smallest = 1e-9, .largest = 1}, {100});
   Real t = 0;
@@ -94,7 +95,7 @@ TEST(StepControl, GrowsNoFasterThanItMayAndNotAfterARejection) {
   EXPECT_DOUBLE_EQ(control.memory().length, 0.004);
   EXPECT_EQ(control.judge(0.004, {{"error", 0.001, 1}}, 1), Verdict::accepted);
   EXPECT_DOUBLE_EQ(control.memory().length, 0.004);
-  EXPECT_EQ(control.judge(0.004, {}, 1), Verdict::accepted);  // nothing is known
+  EXPECT_EQ(control.judge(0.004, {}, 1), Verdict::accepted);  // no information
   EXPECT_DOUBLE_EQ(control.memory().length, 0.004);
 }
 
@@ -106,14 +107,14 @@ TEST(StepControl, AcceptsWhatNoShorterStepMakesBetter) {
   EXPECT_EQ(smallest.judge(0.1, {{"error", 0.5, 1}}, 1), Verdict::limited);
 }
 
-/// The last step before a stop is the shortest one that is allowed, up to rounding.
+/// The last step before a stop has the smallest allowed length, up to round-off.
 TEST(StepControl, TriesNoStepTwiceWithTheSameLength) {
   StepControl control({.tolerance = 1e-2, .first = 1e-7, .smallest = 1e-8, .largest = 1}, {1});
   EXPECT_EQ(control.judge(1e-7, {{"error", 1e3, 1}}, 1), Verdict::rejected);
   EXPECT_EQ(control.judge(1.000000000000001e-8, {{"error", 1e2, 1}}, 1), Verdict::limited);
 }
 
-/// Errors fall with each attempt, though by so little that the tolerance stays out of reach.
+/// Errors decrease with each attempt, but so slowly that the tolerance is not reached.
 TEST(StepControl, LimitsRejectionsInARow) {
   StepControl control({.tolerance = 1e-2, .first = 1, .smallest = 1e-300, .largest = 1}, {1});
   Real error = 1e30;
@@ -124,7 +125,7 @@ TEST(StepControl, LimitsRejectionsInARow) {
   EXPECT_EQ(n, StepControl::most_rejections + 1);
 }
 
-/// Counts of iterations that alternate say nothing about the length.
+/// Alternating iteration counts do not determine the step length.
 TEST(StepControl, IsNotDrivenToEverShorterStepsByCountsThatAlternate) {
   for (const int more : {5, 6, 7}) {
     StepControl control({.tolerance = {}, .iterations = 3, .first = 0.1, .smallest = 1e-12, .largest = 1}, {100});
