@@ -1,11 +1,11 @@
-// The fracture inside of a block of Wollmann (2024), under growing compression: it sticks, and everything is linear in
-// time.
+// Immersed fracture in a block of Wollmann (2024) under increasing compression. The fracture sticks, so the solution
+// is linear in time.
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Means over the fracture in the order n, t1, t2. Collective.
+/// Means over the fracture, components n, t1, t2. Computation is collective.
 struct Means {
   Vector3 jump{}, traction{};
 };
@@ -75,9 +75,9 @@ TEST(Immersed3D, SticksAndIsLinearInTime) {
     expect_linear_in_time(read_scene("seed/immersed_3d.xml", {"Mesh.cells={6, 6, 6}"}), cell);
 }
 
-/// Plain tips limit the mean jump to first order; enriched ones at least halve its error. Both shapes of cells must
-/// point to the same limit; a finite-volume code on triangles of size 0.25 found 0.021944 (four faces on the fracture):
-/// as far from that limit as that size allows, judged by our own error there.
+/// With plain tips, the mean jump converges with first order; enriched tips at least halve its error. Both cell shapes
+/// must have the same limit. A finite-volume code with triangles of size 0.25 (four faces on the fracture) gave
+/// 0.021944. The difference from our limit is below our own error at this size.
 TEST(Immersed2D, MeanJumpConvergesWithFirstOrder) {
   std::vector<Real> limits;
   for (const auto& cell : cells_of(2)) {
@@ -110,7 +110,7 @@ TEST(Immersed2D, MeanJumpConvergesWithFirstOrder) {
   EXPECT_NEAR(limits[0], 0.0177, 1e-4);
 }
 
-/// By symmetry the exact mean of the tangential jump is zero, and the block bulges alike to both sides.
+/// By symmetry, the exact mean of the tangential jump is zero.
 TEST(Immersed3D, NormalTraction) {
   for (const auto& cell : cells_of(3)) {
     const std::string tips = cell == "hexahedron" ? "enriched" : "plain";

@@ -1,15 +1,15 @@
-// The block of Wollmann (2024) with a fracture through it, pushed and pulled, on every cell shape, turned, renumbered,
-// sides swapped.
+// Block of Wollmann (2024) with a fracture through it, under push and pull: all cell shapes, rotations, renumbering,
+// swapped sides.
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-constexpr Real K_t = 1e-5;                                 // Pa/m, of these scenes
+constexpr Real K_t = 1e-5;                                 // Pa/m, in these scenes
 constexpr Real G = 1e6, lambda = 1e3, P = 2 * G + lambda;  // Pa
 const Real plane_strain = P - lambda * lambda / P;         // of a free side: stress per strain in 2D, Pa
 
-/// One rigid motion of the same problem.
+/// Rotation, side order and numbering of the same problem.
 struct Variant {
   std::string cell;
   Real degrees = 0;
@@ -37,7 +37,7 @@ std::vector<Variant> variants(int dim) {
   return all;
 }
 
-/// Calls visit(model, Q) for a scene in every variant with one of the cells, after its step.
+/// Calls visit(model, Q) after the step, for a scene in every variant with one of the cells.
 template <class Visit>
 void for_variants(const std::string& name, int dim, const std::vector<std::string>& cells,
                   const std::vector<std::string>& overrides, const Visit& visit) {
@@ -66,8 +66,7 @@ void run(const std::string& name, int dim, const std::vector<std::string>& cells
 }
 
 TEST(Push2D, JumpIsElastic) {
-  // The sides are free, so the normal traction varies a little from mesh to mesh: it is compared where that matters,
-  // below.
+  // The sides are free, so the normal traction varies slightly between meshes. Tests below compare it accurately.
   run("seed/push_2d.xml", 2, cells_of(2), {},
       {{0, 1, 0}, {1, 0, 0}, {0, 0, 0}, {K_t, -2.001e6, 0}, 1e-9, 1e-6 * 2.001e6});
 }
@@ -77,14 +76,15 @@ TEST(Push3D, JumpIsElastic) {
       {{0, 1, 0}, {2, 0, 3}, {0, 0, 0}, {2 * K_t, -2.001e6, 3 * K_t}, 1e-9, 1e-6 * 2.001e6});
 }
 
-/// The tetrahedra below and above the fracture are no mirror images, so its sides bulge differently where Poisson's
-/// ratio is not zero. Without it the state is uniform and exact.
+/// The tetrahedra on both sides of the fracture are not symmetric. With Poisson's ratio above zero, the sides of the
+/// fracture therefore deform differently. Without it, the state is uniform and exact.
 TEST(Push3D, JumpIsElasticBetweenTetrahedra) {
   run("seed/push_3d.xml", 3, {"tetrahedron"}, {"Materials.rock.Lame's first parameter=0"},
       {{0, 1, 0}, {2, 0, 3}, {0, 0, 0}, {2 * K_t, -2e6, 3 * K_t}, 1e-9, 1e-9 * 2e6});
 }
 
-/// With it, every variant has the same solution face by face, and the error of the jump vanishes under refinement.
+/// With Poisson's ratio above zero, all variants have the same solution in every face. The error of the jump vanishes
+/// under refinement.
 TEST(Push3D, TetrahedraDoNotSeeTheFrame) {
   std::vector<Vector3> centres, jumps, tractions;
   for_variants("seed/push_3d.xml", 3, {"tetrahedron"}, {}, [&](model::Model& model, const Matrix3& Q) {
@@ -125,9 +125,9 @@ TEST(Pull3D, JumpIsPlasticAndTheFaceIsOpen) {
   run("seed/pull_3d.xml", 3, cells_of(3), {}, {{0, 1, 0}, {0, 0, 0}, {2, 1, 3}, {0, 0, 0}});
 }
 
-/// Shear traction K_t u^e, to the accuracy of u^e; the normal traction lies between that of free and of held sides, and
-/// agrees with two independent computations, each with its own discretisation of the free sides: a finite-volume code
-/// on the same 2 x 2 cells (-2000999.55 Pa; 3D -2000999.137 Pa) and quadratic elements (-2000999.65 Pa).
+/// The shear traction is K_t u^e, to the accuracy of u^e. The normal traction is between the values of free and of
+/// constrained sides. It agrees with two independent discretisations of the free sides: finite volumes on the same 2 x
+/// 2 cells (-2000999.55 Pa; 3D -2000999.137 Pa) and quadratic elements (-2000999.65 Pa).
 TEST(Push, Tractions) {
   for (const int dim : {2, 3}) {
     model::Model model(read_scene(dim == 2 ? "seed/push_2d.xml" : "seed/push_3d.xml"), Tpetra::getDefaultComm());

@@ -1,2 +1,2 @@
-// So that scenes.hpp is compiled once, for all suites.
+// Compiles scenes.hpp once for all suites.
 #include "scenes.hpp"

@@ -1,4 +1,4 @@
-// What the suites of whole scenes share: scenes read and turned, and their outputs by name.
+// Common functions of the suites of whole scenes: reading and rotating scenes, and outputs by name.
 #pragma once
 
 #include "mesh/box.hpp"
@@ -23,7 +23,7 @@ inline model::Scene read_scene(const std::string& name, const std::vector<std::s
   return model::read_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/" + name, overrides);
 }
 
-/// Whether the communicator's ranks agree that something is true somewhere. Collective.
+/// Returns whether `here` is true on some rank. Collective.
 inline bool anywhere(const Comm& comm, bool here) {
   const int mine = here ? 1 : 0;
   int any = 0;
@@ -33,7 +33,7 @@ inline bool anywhere(const Comm& comm, bool here) {
 
 inline Matrix3 identity() { return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; }
 
-/// The matrix that turns by an angle in degrees about an axis, counter-clockwise: c 1 + s [a]x + (1 - c) a a^T.
+/// Returns the rotation matrix about an axis, counter-clockwise, angle in degrees: c 1 + s [a]x + (1 - c) a a^T.
 inline Matrix3 rotation(Real degrees, const Vector3& axis) {
   const Real length = std::hypot(axis[0], axis[1], axis[2]), angle = degrees * M_PI / 180;
   const Real c = std::cos(angle), s = std::sin(angle);
@@ -67,8 +67,8 @@ inline Real dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] 
 inline Vector3 difference(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Real norm(const Vector3& a) { return std::sqrt(dot(a, a)); }
 
-/// Turns a scene as a whole: the box and the vectors of all boundary conditions, which must prescribe every component
-/// and not depend on the place. Returns the matrix that does it.
+/// Rotates a scene: the box and the vectors of all boundary conditions. The conditions must prescribe every component
+/// and not depend on the coordinates. Returns the rotation matrix.
 inline Matrix3 turn(model::Scene& scene, Real degrees, const Vector3& axis) {
   scene.mesh.rotation = degrees;
   scene.mesh.rotation_axis = {axis[0], axis[1], axis[2]};
@@ -92,7 +92,7 @@ inline Matrix3 turn(model::Scene& scene, Real degrees, const Vector3& axis) {
   return Q;
 }
 
-/// Moves the box of a scene by v, before any rotation. Its loads must not depend on the place.
+/// Translates the box of a scene by v, before any rotation. Its loads must not depend on the coordinates.
 inline void translate(model::Scene& scene, const Vector3& v) {
   const auto move = [&](std::vector<Real>& corner) {
     for (std::size_t i = 0; i < corner.size(); ++i) corner[i] += v[i];
@@ -105,19 +105,19 @@ inline void translate(model::Scene& scene, const Vector3& v) {
   }
 }
 
-/// The shapes of a dimension.
+/// Returns the cell shapes of a dimension.
 inline std::vector<std::string> cells_of(int dim) {
   return dim == 2 ? std::vector<std::string>{"quadrilateral", "triangle"}
                   : std::vector<std::string>{"hexahedron", "tetrahedron"};
 }
 
-/// A choice of cells for a scene.
+/// Cell shape and order for a scene.
 struct Discretisation {
   std::string cell;
   int order;
 
   std::string name() const { return fmt::format("{} of order {}", cell, order); }
-  /// Overrides of a scene, followed by others.
+  /// Returns overrides of a scene for this discretisation, followed by others.
   std::vector<std::string> with(const std::vector<std::string>& others = {}) const {
     std::vector<std::string> all = {"Mesh.cell=" + cell, fmt::format("Mesh.order={}", order)};
     all.insert(all.end(), others.begin(), others.end());
@@ -125,7 +125,7 @@ struct Discretisation {
   }
 };
 
-/// All of a dimension.
+/// Returns all discretisations of a dimension.
 inline std::vector<Discretisation> discretisations(int dim) {
   std::vector<Discretisation> all;
   for (const auto& cell : cells_of(dim))
@@ -133,7 +133,7 @@ inline std::vector<Discretisation> discretisations(int dim) {
   return all;
 }
 
-/// The outputs of a model's present state, of what this rank owns.
+/// Outputs of the present state of a model, for the entities that this rank owns.
 class Outputs {
  public:
   explicit Outputs(model::Model& model) : fields_(model.system().outputs(model.state())) {}
@@ -156,15 +156,15 @@ class Outputs {
   std::vector<assembly::OutputField> fields_;
 };
 
-/// What is expected of every face of one plane fracture whose normal is n before the scene is turned by Q: vectors for
-/// sides that are ordered along n. Where the mesh orders them the other way round, jumps and tractions change sign.
+/// Expected state of all faces of a plane fracture, with the normal n before the rotation Q of the scene. Vectors are
+/// for sides ordered along n. For the opposite order in the mesh, jumps and tractions change sign.
 struct Expected {
   Vector3 n, elastic, plastic, traction;
   Real tolerance = 1e-9, traction_tolerance = 1e-9;  ///< absolute
-  std::string fracture = {};                         ///< its name; empty: all fractures
+  std::string fracture = {};                         ///< name; empty: all fractures
 };
 
-/// Compares vectors turned back, and what does not depend on the frame.
+/// Compares the vectors in the unrotated frame, and frame-independent outputs.
 inline void expect_joint(model::Model& model, const Expected& e, const Matrix3& Q = identity()) {
   const Outputs out(model);
   const auto n = times(Q, e.n);
@@ -200,7 +200,7 @@ inline void expect_joint(model::Model& model, const Expected& e, const Matrix3& 
   }
 }
 
-/// Mean over the area of all fractures of a component of an output. Collective.
+/// Returns the area-weighted mean of an output component over all fractures. Collective.
 inline Real mean(const model::Model& model, const assembly::OutputField& field, int component) {
   Real here[2] = {0, 0}, all[2];
   for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
@@ -212,12 +212,12 @@ inline Real mean(const model::Model& model, const assembly::OutputField& field, 
   return all[0] / all[1];
 }
 
-/// Faces of all ranks in the order of their global numbers, turned back and with sides ordered along n.
+/// Faces of all ranks by global number: vectors in the unrotated frame, sides ordered along n.
 struct GatheredFaces {
   std::vector<Vector3> centre, jump, traction;
 };
 
-/// Collective; the same on every rank.
+/// Returns the faces of all ranks, equal on every rank. Collective.
 inline GatheredFaces gathered_faces(model::Model& model, const Matrix3& Q, const Vector3& n) {
   const Outputs out(model);
   const auto& mesh = model.mesh();

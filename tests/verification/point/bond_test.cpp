@@ -1,4 +1,4 @@
-// A bonded joint at one point: linear softening in tension and in shear, and what is left when it is lost.
+// Bonded joint at one point: linear softening in tension and in shear, and the state after loss of the bond.
 #include "point_scenes.hpp"
 
 namespace sprekk::tests {
@@ -6,12 +6,12 @@ namespace {
 
 using laws::ContactState;
 
-constexpr Real K = 2e12, strength = 10e6, end = 1e-5;  // the traction is 0 at the opening 2 G/T
+constexpr Real K = 2e12, strength = 10e6, end = 1e-5;  // the traction vanishes at the opening 2 G/T
 
 Real softening(Real w) { return strength * (end - w) / (end - strength / K); }
 
-/// Pulled along the softening branch, released and pulled again along the secant, pressed without interpenetration
-/// beyond the elastic closure, and apart at 2 G/T.
+/// The path loads along the softening branch, unloads and reloads along the secant, compresses with elastic closure
+/// only, and opens beyond 2 G/T.
 TEST(Bond, SoftensInTensionAndUnloadsAlongTheSecant) {
   const auto states = drive("bond.xml", {"Time.steps=11"});
   const Real secant = softening(7e-6) / 7e-6;
@@ -21,18 +21,18 @@ TEST(Bond, SoftensInTensionAndUnloadsAlongTheSecant) {
   EXPECT_EQ(states[1].contact, ContactState::stick);
   EXPECT_EQ(states[6].contact, ContactState::open);
   EXPECT_EQ(states[7].contact, ContactState::open);
-  EXPECT_NEAR(states[9].traction[1], 0.5 * 2e6, 1e-3);  // friction alone is left
+  EXPECT_NEAR(states[9].traction[1], 0.5 * 2e6, 1e-3);  // only friction remains
   EXPECT_NEAR(states[10].traction[1], 0.5 * 2e6, 1e-3);
 }
 
-/// The scene's own steps reach the strength.
+/// The steps of the scene itself include the peak.
 TEST(Bond, TheCurveHasItsPeak) {
   Real largest = 0;
   for (const auto& s : drive("bond.xml")) largest = std::max(largest, s.traction[0]);
   EXPECT_NEAR(largest, strength, 1e-9 * strength);
 }
 
-/// A tension that the bond does not bear ends the curve; what is before it is there, and the reason has the strength.
+/// A traction above the strength ends the curve. Earlier states are kept, and the message contains the strength.
 TEST(Bond, KeepsTheStatesBeforeItBreaks) {
   const auto curves = model::drive_points(
       model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/bond.xml",
@@ -45,8 +45,8 @@ TEST(Bond, KeepsTheStatesBeforeItBreaks) {
     EXPECT_NE(curves[0].failure.find(word), std::string::npos) << curves[0].failure;
 }
 
-/// A tension above the strength, then compression: the faces fly apart, and the path goes on where they are pressed, at
-/// the jump along them that they had when the tension ended, with friction alone. tau = K_t (w - w(4)), w = 2e-6 t.
+/// Tension above the strength, then compression: the faces separate. The path continues in compression from the
+/// tangential jump at the end of tension, with friction only: tau = K_t (w - w(4)), w = 2e-6 t.
 TEST(Bond, GoesOnPastItsLoss) {
   for (const std::string control : {"{traction, jump}", "{traction, jump, jump}"}) {
     const bool flat = control == "{traction, jump}";
@@ -55,7 +55,7 @@ TEST(Bond, GoesOnPastItsLoss) {
                           std::string("Point.path={12e6*sin(pi*t/4), 2e-6*t") + (flat ? "}" : ", 0}")}));
     ASSERT_EQ(curves[0].failure, "");
     const auto& states = curves[0].states;
-    ASSERT_EQ(states.size(), 10u);  // two before the loss at 10 MPa, and from 4.5 on
+    ASSERT_EQ(states.size(), 10u);  // two before the loss at 10 MPa, then from t = 4.5
     EXPECT_EQ(states[2].t, 4.5);
     for (const char* word : {"step 3 of 16, t = 1.5", "exceeds the tensile strength", "apart until they are pressed"})
       EXPECT_NE(states[2].remark.find(word), std::string::npos) << states[2].remark;
@@ -70,7 +70,7 @@ TEST(Bond, GoesOnPastItsLoss) {
   }
 }
 
-/// A rigid joint parts at its strength, and bears by its opening o T (1 - o/o_f), with o_f = 2 G/T.
+/// A rigid joint opens at its strength; its traction at the opening o is T (1 - o/o_f), with o_f = 2 G/T.
 TEST(Bond, RigidJointSoftensByItsOpening) {
   const std::vector<std::string> rigid = {"Materials.cemented joint.tangential stiffness=infinite",
                                           "Materials.cemented joint.closure=Barton-Bandis",
@@ -84,7 +84,7 @@ TEST(Bond, RigidJointSoftensByItsOpening) {
       EXPECT_NEAR(s.traction[0], strength * std::max(left, Real(0)), 1e-9 * strength) << s.t;
     }
   }
-  auto column = rigid;  // parts, and is pressed again
+  auto column = rigid;  // opens and is compressed again
   column.insert(column.end(), {"Point.control={column, jump}", "Point.path={1e-4*sin(6*t), 1e-5*t}",
                                "Point.column normal stiffness=1e11"});
   const auto states = drive("bond.xml", column);
@@ -92,7 +92,7 @@ TEST(Bond, RigidJointSoftensByItsOpening) {
     if (std::sin(6 * s.t) < 0) EXPECT_NEAR(s.traction[0], 1e7 * std::sin(6 * s.t), 1) << s.t;
 }
 
-/// The area under the curve is the fracture energy, also with releases on the way.
+/// The area under the curve is the fracture energy, also with unloading in between.
 TEST(Bond, DissipatesTheFractureEnergy) {
   for (const std::string path : {"1.2e-5*t", "1.2e-5*min(1, 1.5*t) - 1.2e-5*max(0, min(t - 0.2, 0.4 - t))"}) {
     const auto states = drive("bond.xml", {"Point.path={" + path + ", 0}", "Time.end=1", "Time.steps=240"});
@@ -107,8 +107,8 @@ TEST(Bond, DissipatesTheFractureEnergy) {
   }
 }
 
-/// One that softens faster than the joint unloads has two states below its strength, whole and lost: it is whole,
-/// however long the steps are.
+/// A bond that softens faster than the joint unloads has two states below its strength: intact and lost. The result is
+/// intact for any step length.
 TEST(Bond, HoldsUpToItsStrengthIfItIsBrittle) {
   for (const std::string steps : {"1", "2", "5"}) {
     const auto pulled = [&](const std::string& path) {
@@ -122,11 +122,11 @@ TEST(Bond, HoldsUpToItsStrengthIfItIsBrittle) {
   const auto sheared =
       drive("bond.xml", {"Materials.cemented joint.shear fracture energy=20", "Time.end=1",
                          "Point.control={traction, jump}", "Point.path={-4e6, 15e-6*t}", "Time.steps=1"});
-  EXPECT_NEAR(sheared[0].traction[1], 15e6, 1e-9 * strength);  // of 2 + 20 MPa
+  EXPECT_NEAR(sheared[0].traction[1], 15e6, 1e-9 * strength);  // strength: 2 + 20 MPa
 }
 
-/// Under compression c + mu N is borne, and slip takes c away linearly over 2 G/c: tau = mu N + c (1 - u c/(2 G)) with
-/// the slip u = w - tau/K_t.
+/// Under compression the bound is c + mu N. Slip reduces c linearly over the length 2 G/c: tau = mu N + c (1 - u c/(2
+/// G)) with the slip u = w - tau/K_t.
 TEST(Bond, LosesItsCohesionBySlip) {
   const Real c = 20e6, friction = 0.5 * 4e6, length = 2 * 400 / c, K_t = 1e12, peak = friction + c;
   for (const auto& s : drive("bond.xml", {"Point.control={traction, jump}", "Point.path={-4e6, 1e-6*t}", "Time.end=50",

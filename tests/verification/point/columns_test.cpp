@@ -1,5 +1,5 @@
-// Each column of `sprekk point` against a formula that is written here, of all point scenes and of random ones. A
-// column without a formula fails.
+// Compares each column of `sprekk point` with an independent formula, for all point scenes and for random ones. The
+// test fails for a column without formula.
 #include "point_scenes.hpp"
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr Real degree = M_PI / 180;
 
-/// A row of the CSV.
+/// Row of the CSV file.
 using Row = std::map<std::string, Real>;
 
 std::vector<Row> rows_of(const model::PointCurve& curve, std::vector<std::string>& titles) {
@@ -35,7 +35,7 @@ std::vector<Row> rows_of(const model::PointCurve& curve, std::vector<std::string
   return rows;
 }
 
-/// Barton's table of mobilised roughness (1982), by slip over peak slip.
+/// Returns Barton's mobilised roughness (1982), as a function of slip over peak slip.
 Real mobilised(Real x) {
   constexpr Real at[] = {0.3, 0.6, 1, 2, 4, 10, 100}, part[] = {0, 0.75, 1, 0.85, 0.7, 0.5, 0};
   if (x <= at[0] || x >= at[6]) return 0;
@@ -44,7 +44,7 @@ Real mobilised(Real x) {
   return part[k] + (part[k + 1] - part[k]) * (x - at[k]) / (at[k + 1] - at[k]);
 }
 
-/// The formulas of a joint on a path; values in SI, numbers of a row by the titles of columns.
+/// Formulas for a joint on a path; values in SI units, numbers of a row by column titles.
 class Formulas {
  public:
   Formulas(const model::PointScene& scene, const model::PointPath& path)
@@ -60,7 +60,7 @@ class Formulas {
     if (peak_slip_ == 0) peak_slip_ = length / 500 * std::pow(JRC_ / length, 0.33);
   }
 
-  /// Takes a row; the first is the initial state.
+  /// Begins a row; the first row is the initial state.
   void take(const Row& row, bool is_first) {
     row_ = row;
     if (is_first) first_ = row;
@@ -70,7 +70,7 @@ class Formulas {
     for (const Real d : along_) moved_ = std::hypot(moved_, d);
     largest_ = std::max(largest_, -at("traction", 0));
   }
-  /// Ends the row: its slip is history.
+  /// Ends the row: its slip becomes history.
   void commit() {
     dilated_ = opening();
     if (state() != 0) path_length_ += moved_;
@@ -90,9 +90,9 @@ class Formulas {
     return size;
   }
 
-  /// The value of a column without a component (i = -1), or of one; none: there is no such formula.
+  /// Returns the expected value of a column (i: component, -1 without); nullopt if there is no formula.
   std::optional<Real> expected(const std::string& name, int i) {
-    if (name == "t") return row_.at("t");  // see times_are_those_of_the_scene
+    if (name == "t") return row_.at("t");  // see TimesAreThoseOfTheScene
     if (name == "state") return state_by_motion();
     if (name == "jump") return jump(i);
     if (name == "elastic_jump") return elastic(i);
@@ -118,7 +118,7 @@ class Formulas {
   Real column(std::size_t i) const { return i == 0 ? path_.normal_stiffness : path_.tangential_stiffness; }
   bool damaged() const { return material_.damage != "none"; }
 
-  /// V(N), m.
+  /// Returns the closure V(N), m.
   Real closure(Real N) const {
     const Real K = value("normal stiffness", std::numeric_limits<Real>::infinity());
     const Real most = material_.closure == "linear" ? std::numeric_limits<Real>::infinity()
@@ -150,17 +150,17 @@ class Formulas {
       return at(first_, "traction", i) + column(i) * (prescribed(i) - (at("jump", i) - at(first_, "jump", i)));
     return i > 0 ? stiffness() * (at("jump", i) - slipped_[i - 1]) : at("traction", 0);
   }
-  /// Slip moves the plastic jump; what is open bears nothing.
+  /// Returns the expected contact state: slip if the plastic jump changes; zero traction is open.
   Real state_by_motion() const {
     Real shear = 0, all = std::abs(at("traction", 0));
     for (std::size_t i = 1; i < dim_; ++i) shear = std::hypot(shear, at("traction", i));
     all = std::max(all, shear);
-    if (all == 0) return state();  // touching or not
+    if (all == 0) return state();  // in contact or not
     if (row_ == first_) return 1;
     return moved_ > 1e-9 * length() ? 2 : 1;
   }
 
-  /// What slip opens, m.
+  /// Returns the opening by slip, m.
   Real opening() const {
     Real distance = 0, before = 0;
     for (std::size_t i = 1; i < dim_; ++i) {
@@ -176,7 +176,8 @@ class Formulas {
       mean += std::tan(mobilised((path_length_ + (k + 0.5) / n * moved_) / peak_slip_) * steep) / n;
     return dilated_ + mean * (distance - before);
   }
-  /// The normal plastic jump of faces that touch; of others, and where damage leaves a part of dilation, the rest.
+  /// Returns the normal plastic jump of closed faces by formula. For open faces and with damage: jump minus elastic
+  /// jump.
   Real gap() const {
     if (state() == 0 || damaged() || at("traction", 0) >= 0) return at("jump", 0) - elastic(0);
     return material_.initial_gap({0, 0, 0}, 0) + opening() - retained() * closure(largest_);
@@ -215,14 +216,14 @@ class Formulas {
   const model::Material& material_;
   std::size_t dim_;
   Row row_, first_;
-  std::vector<Real> slipped_, along_;  // the plastic jump before the row, and the slip of the row
+  std::vector<Real> slipped_, along_;  // plastic jump before the row; slip of the row
   Real JRC_, JCS_, peak_slip_, moved_ = 0, path_length_ = 0, largest_ = 0, dilated_ = 0;
 };
 
-/// How often each column was compared.
+/// Number of comparisons per column.
 using Counts = std::map<std::string, int>;
 
-/// Corners of Barton's table are rounded to within 1e-3 of the roughness.
+/// Compares all columns. Values at the points of Barton's table are rounded within 1e-3 of the roughness.
 void expect_columns(const model::PointScene& scene, Counts& counts) {
   const auto curves = model::drive_points(scene);
   const auto paths = scene.paths();
@@ -267,7 +268,7 @@ TEST(Columns, OfAllScenesFollowTheirFormulas) {
     EXPECT_GT(counts[title], 50) << title;
 }
 
-/// Rows are at the times of the scene, and there are two more for each jump of slip at the most.
+/// The rows are at the times of the scene. Each slip jump adds at most two rows.
 TEST(Columns, TimesAreThoseOfTheScene) {
   for (const auto& file : std::filesystem::directory_iterator(source_dir() + "/xml/point")) {
     SCOPED_TRACE(file.path().string());
@@ -286,7 +287,7 @@ TEST(Columns, TimesAreThoseOfTheScene) {
   }
 }
 
-/// Stiffnesses, angles and paths at random, in 2D and 3D.
+/// Random stiffnesses, angles and paths, in 2D and 3D.
 TEST(Columns, OfRandomScenesFollowTheirFormulas) {
   std::mt19937 random(20261129);
   const auto uniform = [&](Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(random); };

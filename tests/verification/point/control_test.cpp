@@ -1,5 +1,5 @@
-// A joint at one point under every kind of control: what comes out obeys the joint law and the prescribed values, and
-// where they determine no state the error says why.
+// Joint at one point under every kind of control. Results obey the joint law and the prescribed values; if these
+// determine no state, the error names the reason.
 #include "point_scenes.hpp"
 
 #include <random>
@@ -11,7 +11,7 @@ using Overrides = std::vector<std::string>;
 
 TEST(Control, TractionOfNormalAndJumpOfShear) {
   const auto states = drive("cyclic_shear.xml", {"Point.control={traction, jump}", "Point.path={-0.3, shear(t)}"});
-  const Real shear[] = {0.18, 0.18, 0.18, -0.18, -0.18, 0.18, 0.18, 0.18};  // K_t = 2 slips at 0.09
+  const Real shear[] = {0.18, 0.18, 0.18, -0.18, -0.18, 0.18, 0.18, 0.18};  // K_t = 2: slip begins at 0.09
   for (int i = 0; i < 8; ++i) EXPECT_NEAR(states[i].traction[1], shear[i], 1e-14) << i;
   EXPECT_NEAR(states[2].plastic[1], 0.41, 1e-14);
   EXPECT_NEAR(states[3].plastic[1], 0.39, 1e-14);
@@ -23,11 +23,11 @@ TEST(Control, TractionsBelowTheFrictionBoundAreElastic) {
   for (const auto& s : states) {
     EXPECT_EQ(s.contact, laws::ContactState::stick);
     EXPECT_NEAR(s.jump[1], s.traction[1] / 2, 1e-15);
-    EXPECT_NEAR(s.jump[0], 0.01 - 0.05, 1e-15);  // half of the closure at lambda_n = -Du K_n
+    EXPECT_NEAR(s.jump[0], 0.01 - 0.05, 1e-15);  // half of the maximum closure at lambda_n = -Du K_n
   }
 }
 
-/// Without a maximum closure 2 MPa close a joint of 50 GPa/m by 0.04 mm, whatever closes it, and 4 MPa twice as far.
+/// Without a maximum closure, closure is linear: 0.04 mm for 2 MPa at 50 GPa/m, and twice this for 4 MPa.
 TEST(Control, ClosureWithoutAMaximumIsLinear) {
   for (const auto& [control, path] : {std::pair{"{traction, jump}", "{-2e6*t, 0}"}, {"{jump, jump}", "{-4e-5*t, 0}"}}) {
     const auto states =
@@ -52,8 +52,8 @@ TEST(Control, JumpOfARigidJointIsPlastic) {
   }
 }
 
-/// A rigid joint whose jump does not change bears any traction up to the bound: it keeps the last one, of which a lower
-/// bound leaves less. In 3D each component rests for itself.
+/// A rigid joint with constant jump can have any shear traction up to the bound. It keeps its last traction, unless
+/// the bound decreases below it. In 3D this holds for each component.
 TEST(Control, RigidJointAtRestKeepsItsTraction) {
   const std::string rigid = "Materials.joint.tangential stiffness=infinite";
   const auto flat = drive("cyclic_shear.xml", {"Point.control={traction, jump}", rigid, "Time.end=4", "Time.steps=4",
@@ -75,7 +75,8 @@ TEST(Control, DilationUnderConstantNormalJumpBuildsNormalTraction) {
   EXPECT_GT(-states.back().traction[0], 3 * -states.front().traction[0]);
 }
 
-/// A joint, controls and a path drawn at random, with stiffnesses and lengths over several orders of magnitude.
+/// Returns a random joint with random controls and path; stiffnesses and lengths vary over several orders of
+/// magnitude.
 Overrides random_case(std::mt19937& random) {
   const auto uniform = [&](Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(random); };
   const auto any_size = [&](Real low, Real high) { return std::exp(uniform(std::log(low), std::log(high))); };
@@ -84,7 +85,8 @@ Overrides random_case(std::mt19937& random) {
   const char* controls[] = {"{column, column, column}", "{traction, column, column}", "{traction, jump, jump}",
                             "{jump, jump, column}",     "{column, jump, jump}",       "{traction, column, jump}"};
   const std::string control = controls[random() % 6];
-  const bool clamped = control[1] == 'j';  // then the joint must be able to close as far as jump and dilation ask
+  const bool clamped = control[1] == 'j';  // prescribed normal jump: the closure must be able to compensate jump and
+                                           // dilation
   Overrides overrides = {"Point.control=" + control,
                          set("Materials.joint.tangential stiffness", stiffness * any_size(0.01, 100)),
                          set("Materials.joint.friction coefficient", uniform(0, 1)),
@@ -103,7 +105,7 @@ Overrides random_case(std::mt19937& random) {
   return overrides;
 }
 
-/// The joint law in inequalities (section "elastic and plastic jump" of the theory), at every state of a path.
+/// Checks the inequalities of the joint law ("elastic and plastic jump" of the theory) at every state of a path.
 void expect_lawful(const model::PointScene& scene, const std::vector<PointState>& states) {
   const auto value = [&](const char* entry) { return (*scene.materials.at("joint").entry(entry))({}, 0); };
   const Real K = value("tangential stiffness"), mu = value("friction coefficient"), closure = value("maximum closure"),
@@ -146,7 +148,7 @@ TEST(Control, RandomJointsOnRandomPathsObeyTheLaw) {
   }
 }
 
-/// The message of the error that a path must end with.
+/// Returns the message of the error at the end of a path.
 std::string message(const Overrides& overrides) {
   try {
     drive("cyclic_shear.xml", overrides);

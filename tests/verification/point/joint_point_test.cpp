@@ -1,5 +1,5 @@
-// A joint at one point against exact states: all contact regimes, hysteresis, turning shear, extreme parameters. Exact
-// values come from closed forms (roots of a quadratic in the normal force) in 60 digits, not from this program.
+// Joint at one point compared with exact states: all contact regimes, hysteresis, rotating shear, extreme parameters.
+// Exact values are independent closed forms (roots of a quadratic in the normal force) in 60 digits.
 #include "point_scenes.hpp"
 
 namespace sprekk::tests {
@@ -8,9 +8,10 @@ namespace {
 using laws::ContactState;
 using Overrides = std::vector<std::string>;
 
-constexpr Real R = 0.5, S = 0.27;  // amplitude of shear; elastic displacement at which slip starts, mu N / K_s
+constexpr Real R = 0.5, S = 0.27;  // amplitude of shear; elastic displacement at the onset of slip, mu N / K_s
 
-/// One step from a plastic jump to the end of the column at (d_t, d_n), parameters of regimes.xml unless overridden.
+/// Returns the state after one step from a plastic jump to the column end (d_t, d_n), with the parameters of
+/// regimes.xml.
 PointState one_step(Real d_t, Real d_n, Real p_old = 0, Overrides overrides = {}) {
   overrides.insert(overrides.begin(), {fmt::format("Point.path={{{:.17g}, {:.17g}}}", d_n, d_t), "Time.steps=1",
                                        fmt::format("Point.plastic jump={{{:.17g}}}", p_old)});
@@ -87,11 +88,11 @@ TEST(Hysteresis, TurningPointsForAnyNumberOfSteps) {
 }
 
 TEST(Hysteresis, WorkOfACycle) {
-  const int quarter = 200;  // the turning points of the loop are among the steps
+  const int quarter = 200;  // the turning points of the loop are steps
   const auto states = drive("cyclic_shear.xml", {"Time.end=2", fmt::format("Time.steps={}", 8 * quarter),
                                                  "Point.path={-0.1, 0.5*(1 - 4*abs(t - rint(t)))}"});
-  Real work = 0;  // on the column: the integral of the shear traction over the displacement of its end
-  const auto end = [](const PointState& s) { return s.jump[1] + s.traction[1]; };  // the column's stiffness is 1
+  Real work = 0;  // on the column: integral of the shear traction over the displacement of its end
+  const auto end = [](const PointState& s) { return s.jump[1] + s.traction[1]; };  // the stiffness of the column is 1
   for (std::size_t i = states.size() / 2; i < states.size(); ++i)
     work += (states[i].traction[1] + states[i - 1].traction[1]) / 2 * (end(states[i]) - end(states[i - 1]));
   EXPECT_NEAR(work, 4 * 0.18 * (R - S), 1e-12);
@@ -113,7 +114,7 @@ TEST(Hysteresis, InUnitsOfRock) {
   }
 }
 
-/// The shear tractions after the corner path (0, 0) -> (R, 0) -> (R, 0.4), the second leg in n steps.
+/// Returns the shear tractions after the path (0, 0) -> (R, 0) -> (R, 0.4), with n steps on the second part.
 std::array<Real, 2> corner(int n) {
   const auto states = drive("turning_shear.xml", {"Point.path={-0.1, 0.5, 0.4*t}", "Time.end=1",
                                                   "Point.plastic jump={0.23, 0}", fmt::format("Time.steps={}", n)});
@@ -128,7 +129,7 @@ TEST(TurningShear, CornerOfThePath) {
 }
 
 TEST(TurningShear, FirstOrderInTheStep) {
-  const Real psi = 2 * std::atan(std::exp(-0.4 / S));  // between traction and loading, in continuous time
+  const Real psi = 2 * std::atan(std::exp(-0.4 / S));  // between traction and loading, exact in time
   const auto error = [&](int n) {
     const auto lambda = corner(n);
     return std::hypot(lambda[0] - 0.18 * std::sin(psi), lambda[1] - 0.18 * std::cos(psi));
@@ -141,7 +142,7 @@ TEST(TurningShear, FirstOrderInTheStep) {
   }
 }
 
-/// |u^p| where it repeats on a circle of radius R, n steps a turn.
+/// Returns |u^p| of the periodic state on a circle of radius R, with n steps per revolution.
 Real radius_on_circle(int n) {
   const Real turn = 2 * M_PI / n;
   return -S * std::sin(turn / 2) + std::sqrt(R * R - S * S * std::pow(std::cos(turn / 2), 2));

@@ -1,4 +1,4 @@
-// Scenes of xml/point, driven.
+// Reads and runs scenes of xml/point.
 #pragma once
 
 #include "base/check.hpp"
@@ -22,7 +22,7 @@ inline model::PointScene read(const std::string& name, const std::vector<std::st
   return model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name, overrides);
 }
 
-/// The states of xml/point/NAME.
+/// Returns the states of xml/point/NAME.
 inline std::vector<PointState> drive(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return model::drive_point(read(name, overrides));
 }

@@ -1,5 +1,5 @@
-// Cycles of shear: whatever the friction, the dilation, the stiffness and the steps, there is a state at each step, and
-// the last one is that of the law.
+// Cyclic shear: for any friction, dilation, stiffness and steps, each step has a state, and the last state obeys the
+// law.
 #include "base/xml.hpp"
 #include "point_scenes.hpp"
 
@@ -48,7 +48,7 @@ std::vector<Joint> joints() {
                  {"Materials.joint.dilation=decaying angle", "Materials.joint.dilation decay distance=1e-3"}})}};
 }
 
-/// An empty scene of a point with a joint.
+/// Returns a point scene with this joint, stiffness, control and path.
 model::PointScene cycle(const Joint& joint, const std::string& stiffness, int steps, const std::string& control,
                         const std::string& path) {
   Overrides overrides = {"Materials.joint.tangential stiffness=" + stiffness, "Point.control=" + control,
@@ -66,8 +66,8 @@ constexpr const char *in_2d = "{traction, jump}", *there_and_back = "{-1e6, 2e-3
                      *in_3d = "{traction, jump, jump}",
                      *there_and_back_3d = "{-1e6, 1.6e-3*(2 - abs(2 - t)), 1.2e-3*(2 - abs(2 - t))}";
 
-/// The end state of a cycle 0, 4, 0 mm under 1 MPa: N tan(phi) of the path s and the dilation that is left, which is
-/// that of the way out less that of the way back. With a stiffness K the path is shorter by 2 tau/K at the turn.
+/// Final state of a cycle 0, 4, 0 mm under 1 MPa: N tan(phi) for the path length s, and the remaining dilation
+/// (forward minus backward). A stiffness K shortens the path by 2 tau/K at the reversal.
 TEST(Reversal, EndsAlikeWithAnyStiffnessAndSteps) {
   for (const auto& joint : joints()) {
     const auto exact = model::drive_point(cycle(joint, "infinite", 3200, in_2d, there_and_back)).back();
@@ -77,7 +77,7 @@ TEST(Reversal, EndsAlikeWithAnyStiffnessAndSteps) {
         try {
           const auto flat = model::drive_point(cycle(joint, stiffness, steps, in_2d, there_and_back)).back();
           const Real compliance = stiffness == "infinite" ? 0 : 1 / std::stod(stiffness);
-          const Real late = 4e-3 / steps + 2e6 * compliance;  // of the slip, m
+          const Real late = 4e-3 / steps + 2e6 * compliance;  // uncertainty of the slip, m
           EXPECT_NEAR(flat.traction[1], exact.traction[1], 2e6 * late / 2e-3);
           EXPECT_NEAR(flat.jump[0], exact.jump[0], 0.12 * late);
           const auto turned = model::drive_point(cycle(joint, stiffness, steps, in_3d, there_and_back_3d)).back();
@@ -91,8 +91,8 @@ TEST(Reversal, EndsAlikeWithAnyStiffnessAndSteps) {
   }
 }
 
-/// Cycles drawn at random, in 2D and 3D, under a constant or a changing compression, a column or a machine: no step is
-/// without a state, and the shear traction is never above the strength.
+/// Random cycles in 2D and 3D under varying compression: each step has a state, and the shear traction does not exceed
+/// the strength.
 TEST(Reversal, RandomCyclesHaveAStateAtEachStep) {
   std::mt19937 random(20261128);
   const auto uniform = [&](Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(random); };

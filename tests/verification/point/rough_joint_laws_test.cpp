@@ -1,5 +1,5 @@
-// Laws of rough joints at one point: mobilised roughness, its scale and dilation, closure. Numbers with nine and ten
-// digits are from the formulas, computed apart from this program.
+// Laws of rough joints at one point: mobilised roughness with scale effect and dilation, closure. Numbers with nine or
+// ten digits are independent evaluations of the formulas.
 #include "point_scenes.hpp"
 
 namespace sprekk::tests {
@@ -9,7 +9,8 @@ using Overrides = std::vector<std::string>;
 
 constexpr Real peak = 0.9141763792e-3;  // delta_p of JRC 10 and 0.1 m
 
-/// The joint of direct_shear.xml at constant normal load 1 MPa, slipped to x delta_p in one step.
+/// Returns the state of the joint of direct_shear.xml under 1 MPa (constant normal load), sheared to x delta_p in one
+/// step.
 PointState sheared(Real x, Overrides overrides = {}) {
   overrides.insert(overrides.begin(), {"Point.control={traction, jump}", "Time.end=1", "Time.steps=1",
                                        fmt::format("Point.path={{-1e6, {:.17g}}}", x * peak)});
@@ -20,13 +21,13 @@ TEST(MobilisedRoughness, StrengthUnderConstantLoad) {
   const std::pair<Real, Real> between[] = {
       {0.15, .2679491924}, {0.45, .7673269880}, {0.8, 1.0913085011}, {1.5, 1.1302943864}, {50, .7147570420}};
   for (const auto& [x, tau] : between) EXPECT_NEAR(sheared(x).traction[1], tau * 1e6, 1e-9 * 1e6) << x;
-  // at the corners of the table, which are rounded to within 1e-3 of the roughness
+  // Points of the table, which are rounded within 1e-3 of the roughness.
   const std::pair<Real, Real> corners[] = {{0.3, .5773502692}, {0.6, 1},          {1, 1.1917535926}, {2, 1.0723687100},
                                            {4, .9656887748},   {10, .8390996312}, {100, .5773502692}};
   for (const auto& [x, tau] : corners) EXPECT_NEAR(sheared(x).traction[1], tau * 1e6, 1e-3 * 1e6) << x;
 }
 
-/// Many steps to the same slip have the same strength, also when the last ones go back.
+/// The strength depends on the length of the slip path: many steps, also backward ones, give equal strength.
 TEST(MobilisedRoughness, CountsThePath) {
   const auto states =
       drive("direct_shear.xml", {"Point.control={traction, jump}", "Time.end=1", "Time.steps=60",
@@ -52,8 +53,8 @@ TEST(MobilisedRoughness, Dilation) {
   EXPECT_NEAR(steps.back().plastic[0] * 1e3, .472026705, 2e-9);
 }
 
-/// Springs of 5 MPa/mm resist the dilation: dN/ds = k tan(d(s, N)), integrated by Runge-Kutta's method apart from this
-/// program. Implicit Euler tends to it with order 1.
+/// Springs of 5 MPa/mm resist dilation: dN/ds = k tan(d(s, N)). The reference is an independent Runge-Kutta
+/// integration; implicit Euler converges to it with order 1.
 TEST(MobilisedRoughness, ConstantNormalStiffness) {
   const struct {
     Real x, N, tau;
@@ -78,7 +79,7 @@ TEST(MobilisedRoughness, ConstantNormalStiffness) {
   }
 }
 
-/// At constant volume the joint keeps the normal jump that it had under the initial traction.
+/// At constant volume, the normal jump stays as under the initial traction.
 TEST(MobilisedRoughness, ConstantVolume) {
   const auto states = drive("direct_shear.xml", {"Point.control={jump, jump}"});
   for (const auto& s : states) {
@@ -102,13 +103,13 @@ TEST(JointScale, StrengthAndPeakSlip) {
     auto peak_strength = numbers;
     peak_strength.push_back("Materials.joint.friction=Barton-Choubey");
     EXPECT_NEAR(sheared(1, peak_strength).traction[1], j.tau * 1e6, 1e-3);
-    // the slip at which 0.3 of the peak is reached mobilises the residual friction alone
+    // at 0.3 of the peak slip, only the residual friction is mobilised
     const auto early = sheared(0.15 * j.peak_slip / peak, numbers);
     EXPECT_NEAR(early.traction[1], 1e6 * std::tan(M_PI / 12), 1e-3);
   }
 }
 
-/// Closes by the part r less on the way back, and r V(N_max) stays. V(5 MPa) = 0.09375 mm is by hand.
+/// On unloading, the closure decreases less by the fraction r, and r V(N_max) remains. V(5 MPa) = 0.09375 mm by hand.
 TEST(ClosureWithMemory, UnloadsStifferAndKeepsAPart) {
   const auto V = [](Real N) { return 0.15e-3 * N / (20e9 * 0.15e-3 + N); };
   Real largest = 0, before = 0, closed_before = 0, work = 0;

@@ -1,5 +1,5 @@
-// A rough joint after Barton and Choubey at one point, with linear closure: under a constant compression, and pressed
-// by rock that keeps it from opening.
+// Rough joint of Barton and Choubey at one point, with linear closure: under constant compression, and in rock that
+// resists its opening.
 #include "point_scenes.hpp"
 
 namespace sprekk::tests {
@@ -10,8 +10,7 @@ using laws::ContactState;
 Real tangent(Real degrees) { return std::tan(degrees * M_PI / 180); }
 Real bound(Real N) { return N * tangent(30 + 10 * std::log10(100e6 / N)); }
 
-/// The column of 2 GPa/m is in series with the joint of 2 GPa/m. tau(1 MPa) has ten digits and is not from this
-/// program.
+/// The column of 2 GPa/m is in series with the joint of 2 GPa/m. The independent value of tau(1 MPa) has ten digits.
 TEST(RoughJoint, SlidesAtItsStrength) {
   for (const auto& s : drive("rough_joint.xml")) {
     SCOPED_TRACE(s.t);
@@ -25,15 +24,15 @@ TEST(RoughJoint, SlidesAtItsStrength) {
   }
 }
 
-/// Angles at which slabs slide, by sigma_n = gamma h cos(t): roots of tan(t) = b(sigma_n)/sigma_n to ten digits, not
-/// from this program. That of JRC 10 slides at the cap on its friction angle, and without one at no angle.
+/// Angles of sliding slabs, for sigma_n = gamma h cos(t): independent roots of tan(t) = b(sigma_n)/sigma_n, ten
+/// digits. With JRC 10, the slab slides at the bound on the friction angle, and without this bound it does not slide.
 TEST(RoughJoint, SlabsSlideAtTheirAngle) {
   const std::map<std::string, Real> angles = {
       {"rough", 60.080516063}, {"smooth", 44.907117311}, {"very rough", 70}, {"very rough, no cap", 90}};
   for (const auto& curve : model::drive_points(read("tilt.xml"))) {
     SCOPED_TRACE(curve.specimen + ": " + curve.failure);
     const Real angle = angles.at(curve.specimen);
-    EXPECT_NEAR(static_cast<Real>(curve.states.size()), std::min(angle, Real(89)), 1);  // one for each degree
+    EXPECT_NEAR(static_cast<Real>(curve.states.size()), std::min(angle, Real(89)), 1);  // one per degree
     EXPECT_EQ(curve.failure.empty(), angle == 90);
     const std::string told = "the last state is that at t = ";
     const auto at = curve.failure.find(told);
@@ -43,8 +42,8 @@ TEST(RoughJoint, SlabsSlideAtTheirAngle) {
   }
 }
 
-/// Rock of 5 GPa/m that is not moved resists the dilation: N (1/5 GPa/m + 1/20 GPa/m) = d + tan(theta) u_p, with the
-/// displacement d that presses it to 1 MPa at first.
+/// Fixed rock of 5 GPa/m resists dilation: N (1/5 GPa/m + 1/20 GPa/m) = d + tan(theta) u_p. The displacement d causes
+/// the initial 1 MPa.
 TEST(RoughJoint, GainsStrengthWhereItCannotOpen) {
   const Real compliance = 1 / 5e9 + 1 / 20e9, d = 1e6 * compliance;
   for (const auto& s : drive("rough_joint.xml", {"Point.control={column, column}", "Point.column normal stiffness=5e9",

@@ -1,4 +1,4 @@
-// Laws that depend on the slip so far, at one point: slip weakening, damage, mobilised roughness, composed friction.
+// Slip-dependent laws at one point: slip weakening, damage, mobilised roughness, composed friction.
 #include "point_scenes.hpp"
 
 namespace sprekk::tests {
@@ -6,9 +6,9 @@ namespace {
 
 using laws::ContactState;
 
-constexpr Real K_s = 2.0 / 3;  // of a column of stiffness 1 in series with a joint of stiffness 2
+constexpr Real K_s = 2.0 / 3;  // column of stiffness 1 in series with a joint of stiffness 2
 
-/// A load step past the peak from the end of sticking, and the end of the weakening; the values are by hand.
+/// A load step beyond the peak from the end of sticking, and the end of weakening; values by hand.
 TEST(SlipWeakening, FollowsTheLine) {
   const auto states = drive("slip_weakening.xml");
   const Real u[] = {0, 0, 3.0 / 55, 0.22, 0.32, 0.42, 0.52};
@@ -16,12 +16,13 @@ TEST(SlipWeakening, FollowsTheLine) {
     EXPECT_NEAR(states[k].plastic[1], u[k], 1e-14) << k;
     EXPECT_NEAR(states[k].traction[1], K_s * (0.1 * (k + 1) - u[k]), 1e-14) << k;
   }
-  const auto fine = drive("slip_weakening.xml", {"Time.steps=700"});  // implicit, on a line: no error of the step
+  const auto fine = drive("slip_weakening.xml", {"Time.steps=700"});  // implicit steps on a linear law have no time
+                                                                      // error
   EXPECT_NEAR(fine[299].plastic[1], u[2], 1e-13);
 }
 
-/// Where the bound falls faster than the column unloads, 1.2 against 2/3, there is no state near: slip jumps from 0 to
-/// 0.09 at 0.27, whatever the steps. Before and after, states are on the law.
+/// The bound decreases faster than the column unloads (1.2 against 2/3), so there is no neighbouring state. Slip jumps
+/// from 0 to 0.09 at 0.27, for any steps. States before and after obey the law.
 TEST(SlipWeakening, JumpsWhereTheColumnIsTooSoft) {
   for (const int steps : {1, 3, 7, 30}) {
     SCOPED_TRACE(steps);
@@ -47,7 +48,7 @@ TEST(SlipWeakening, JumpsWhereTheColumnIsTooSoft) {
   for (const auto& s : drive("slip_weakening.xml")) EXPECT_EQ(s.remark, "");
 }
 
-/// In SI units: peak 0.6 MPa, residual 0.1 MPa, joint and column in series.
+/// SI units: peak 0.6 MPa, residual 0.1 MPa, joint and column in series.
 TEST(SlipWeakening, JumpsWithAnyNumberOfSteps) {
   const Real K = 1 / (1 / 10e9 + 1 / 1e8);
   for (const int steps : {7, 10, 20, 33, 40, 41, 64, 97, 160}) {
@@ -68,10 +69,10 @@ TEST(SlipWeakening, JumpsWithAnyNumberOfSteps) {
   }
 }
 
-/// Damage over 0.01 m takes 6 Pa/m at first, more than the column unloads: slip jumps at the intact bound to where the
-/// line of the column meets the worn one.
+/// Damage over 0.01 m reduces the bound by 6 Pa/m initially, faster than the column unloads. Slip jumps from the
+/// intact bound to the intersection of the column's line with the worn bound.
 TEST(Damage, JumpsWhereItIsFast) {
-  Real low = 1e-3, high = 1;  // u with K_s (0.405 - u) = 0.18 + 0.09 exp(-u/0.01), beyond 0
+  Real low = 1e-3, high = 1;  // root u > 0 of K_s (0.405 - u) = 0.18 + 0.09 exp(-u/0.01)
   for (int k = 0; k < 100; ++k) {
     const Real u = (low + high) / 2;
     (K_s * (0.405 - u) > 0.18 + 0.09 * std::exp(-100 * u) ? low : high) = u;
@@ -88,8 +89,8 @@ TEST(Damage, JumpsWhereItIsFast) {
   EXPECT_EQ(jumps, 1);
 }
 
-/// Weakening that begins gently: the mobilised roughness of a joint sheared by a soft machine. Just before the jump the
-/// joint is at its peak strength.
+/// Gradual weakening: mobilised roughness of a joint sheared by a soft machine. Just before the slip jump, the joint
+/// is at its peak strength.
 TEST(MobilisedRoughness, JumpsFromItsPeak) {
   const auto states =
       drive("direct_shear.xml", {"Point.control={traction, column}", "Point.column tangential stiffness=20e6",
@@ -98,7 +99,7 @@ TEST(MobilisedRoughness, JumpsFromItsPeak) {
   for (std::size_t k = 1; k < states.size(); ++k) {
     if (states[k].remark.empty()) continue;
     ++jumps;
-    EXPECT_NEAR(states[k - 1].traction[1], 1.1917535926e6, 2e-3 * 1.19e6);  // but for the rounding of the kink
+    EXPECT_NEAR(states[k - 1].traction[1], 1.1917535926e6, 2e-3 * 1.19e6);  // up to rounding at the kink
     EXPECT_LT(states[k].traction[1], 1.15e6);
   }
   EXPECT_EQ(jumps, 1);
@@ -114,8 +115,8 @@ TEST(SlipWeakening, CountsThePathToAndFro) {
   }
 }
 
-/// PorePy's isotropic damage: mu 0.6, d0 = 1.5, c = 5, as an intact 0.9 of which 2/3 stay, L = 1/5. Values with twelve
-/// digits by Lambert's function, not from this program.
+/// Isotropic damage of PorePy: mu 0.6, d0 = 1.5, c = 5, i.e. intact 0.9, residual part 2/3, L = 1/5. Independent
+/// values with twelve digits by Lambert's W function.
 TEST(Damage, IsotropicUnderCyclicShear) {
   const auto states = drive("damage.xml");
   const struct {
@@ -136,8 +137,8 @@ TEST(Damage, IsotropicUnderCyclicShear) {
   }
 }
 
-/// The history that a rigid joint's bound tells on a path of plastic jumps, with mu N = 1 and nothing left at last:
-/// Lambda = -L ln(b).
+/// Returns the history variables of a rigid joint on a path of plastic jumps, from its bound b with mu N = 1 and
+/// residual part 0: Lambda = -L ln(b).
 std::vector<Real> histories(const std::string& damage, std::vector<Real> path) {
   path.insert(path.begin(), 0);
   std::vector<Real> times(path.size()), all;
@@ -159,25 +160,25 @@ void expect_equal(const std::vector<Real>& values, const std::vector<Real>& expe
   for (std::size_t k = 0; k < values.size(); ++k) EXPECT_NEAR(values[k], expected[k], 1e-12) << k;
 }
 
-/// Paths of PorePy's tests, in two dimensions, but for steps without slip, which tell no bound.
+/// Two-dimensional paths of PorePy's tests, without steps that have no slip (their bound is unknown).
 TEST(Damage, HistoryOfAPath) {
   expect_equal(histories("isotropic", {0.2, 0.01, 0.2, 0.01, -0.2}), {0.2, 0.39, 0.58, 0.77, 0.98});
   expect_equal(histories("isotropic", {-0.2, 0.2, 0.1}), {0.2, 0.6, 0.7});
   expect_equal(histories("anisotropic", {-0.2, 0.2, 0.1}), {0.2, 0.2, 0.3});
 }
 
-/// On the way back from u = 0.3 the worn side bears 0.1845 at u = 0 and the whole one 0.27. The column asks for 0.2:
-/// the joint stays where the sides change, and slips on once 0.27 is reached.
+/// On the way back from u = 0.3, the bound at u = 0 is 0.1845 on the worn side and 0.27 on the intact side. The column
+/// traction is 0.2: the joint stays at u = 0 and slips again at 0.27.
 TEST(Damage, StaysWhereTheSidesChange) {
   const auto states = drive("damage.xml", {"Materials.joint.damage=anisotropic", "Time.end=7", "Time.steps=7"});
   EXPECT_NEAR(states[4].plastic[1], 0.299855684813, 1e-9);
   EXPECT_NEAR(states[5].plastic[1], 0, 2e-4);
   EXPECT_NEAR(states[5].traction[1], -0.2, 2e-4);
-  EXPECT_NEAR(states[6].plastic[1], -0.299855684813, 1e-3);  // but for what the stay has worn
+  EXPECT_NEAR(states[6].plastic[1], -0.299855684813, 1e-3);  // up to the wear at u = 0
 }
 
-/// Frictional work as the driver, mu = 0.5 + 0.3 d, r = 0.3, L = 0.05 MPa m, N = 10 MPa: implicit Euler to u = 0.02 in
-/// n steps, and the exact history, which it tends to with order 1. Ten to twelve digits, not from this program.
+/// Driver: frictional work. mu = 0.5 + 0.3 d, r = 0.3, L = 0.05 MPa m, N = 10 MPa. Independent values with ten to
+/// twelve digits: implicit Euler to u = 0.02 in n steps, and the exact history (convergence order 1).
 TEST(Damage, DrivenByFrictionalWork) {
   const auto lambda = [](int n) {
     const auto s =
@@ -197,8 +198,8 @@ TEST(Damage, DrivenByFrictionalWork) {
   EXPECT_NEAR((lambda(512) - exact) / (lambda(1024) - exact), 2, 0.02);
 }
 
-/// Work that friction and dilation do is never given back: on paths to and fro and over several cycles, in both
-/// directions, with friction that stays above the dilation.
+/// The work of friction and dilation is never negative: on cyclic paths in both directions, with friction above the
+/// dilation.
 TEST(Damage, DissipatesInEveryStep) {
   for (const std::string damage : {"isotropic", "anisotropic"})
     for (const std::string driver : {"slip", "compression", "frictional work"}) {
@@ -227,9 +228,9 @@ TEST(Damage, DissipatesInEveryStep) {
     }
 }
 
-/// Composed friction with N over N_T and Lambda over L, the same L of friction and dilation but for the last; ten
-/// digits, not from this program. Without damage at N -> 0 the angles add up (Patton), and at N_T the asperities are
-/// sheared, 0.5 + 0.3.
+/// Composed friction for N over N_T and Lambda over L; friction and dilation have the same L except in the last case.
+/// Independent values with ten digits. Without damage, the angles add up for N -> 0 (Patton), and at N_T the
+/// asperities shear off: 0.5 + 0.3.
 TEST(ComposedFriction, KnownValues) {
   const auto mu = [](Real over, Real lambda, Real dilation_length = 1) {
     const auto s = drive(

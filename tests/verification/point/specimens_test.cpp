@@ -1,4 +1,4 @@
-// Several specimens in one scene: each does what it does alone.
+// Several specimens in one scene: each has the same result as alone.
 #include "point_scenes.hpp"
 
 #include <sstream>
@@ -27,7 +27,7 @@ TEST(Specimens, AreWhatTheyAreAlone) {
   }
 }
 
-/// Curves begin under the initial traction, with the jump under it: 1 MPa over 50 GPa/m.
+/// Curves begin at the initial traction with its jump: 1 MPa over 50 GPa/m.
 TEST(Specimens, BeginWithTheInitialState) {
   const auto curve = model::drive_points(shear_tests())[1];
   EXPECT_EQ(curve.specimen, "1 MPa");
@@ -38,7 +38,7 @@ TEST(Specimens, BeginWithTheInitialState) {
   EXPECT_EQ(curve.initial.contact, laws::ContactState::stick);
 }
 
-/// The strength is the bound of friction: the shear traction of a joint that slips. Its largest is the peak strength.
+/// The strength is the friction bound, i.e. the shear traction of a slipping joint. The maximum is the peak strength.
 TEST(Specimens, StrengthIsTheShearTractionOfSlip) {
   const auto curve = model::drive_points(shear_tests({"Time.steps=1600"}))[1];
   Real largest = 0;
@@ -46,10 +46,11 @@ TEST(Specimens, StrengthIsTheShearTractionOfSlip) {
     if (s.contact == laws::ContactState::slip) EXPECT_NEAR(s.strength, s.traction[1], 1e-9 * 1e6) << s.t;
     largest = std::max(largest, s.strength);
   }
-  EXPECT_NEAR(largest, 1.1917535926e6, 2e-3 * 1e6);  // but for the rounding of the kink
+  EXPECT_NEAR(largest, 1.1917535926e6, 2e-3 * 1e6);  // up to rounding at the kink
 }
 
-/// One that has no state at a step keeps those before, and the others are whole; the file has the rows of all.
+/// A specimen that fails in a step keeps its earlier states. The other specimens are complete, and the file has the
+/// rows of all.
 TEST(Specimens, OneFailsAlone) {
   const auto curves = model::drive_points(
       shear_tests({"Specimens.1 MPa.control={traction, traction}", "Specimens.1 MPa.path={-1e6, 2e4*t}"}));

@@ -1,4 +1,4 @@
-// The strength that each state of a point reports.
+// Reported strength of each state of a point.
 #include "point_scenes.hpp"
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 namespace sprekk::tests {
 namespace {
 
-/// While a joint slips, its shear traction is its strength: for all laws of the scenes, in 2D and 3D.
+/// While a joint slips, its shear traction equals its strength: for all laws of the scenes, in 2D and 3D.
 TEST(Strength, IsTheShearTractionOfAJointThatSlips) {
   int n_slips = 0, n_in_3d = 0;
   for (const auto& file : std::filesystem::directory_iterator(source_dir() + "/xml/point")) {

@@ -1,5 +1,5 @@
-// Cyclic shear at constant normal force: a hysteresis loop. N = 0.3, so that the joint slides at 0.18, with rock and
-// joint in series K_s = 2/3, and from an elastic displacement S = 0.18/K_s = 0.27 on.
+// Cyclic shear at constant normal force: hysteresis loop. N = 0.3, so the joint slips at 0.18. Rock and joint in
+// series have K_s = 2/3; slip begins at the elastic displacement S = 0.18/K_s = 0.27.
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
@@ -54,7 +54,7 @@ TEST(CyclicShear, Turned) {
       }
 }
 
-/// Shear along no axis of the joint's frame.
+/// Shear in a general direction of the joint frame.
 TEST(CyclicShear, Oblique) {
   for (const auto& d : discretisations(3)) {
     SCOPED_TRACE(d.name());
@@ -73,7 +73,7 @@ TEST(CyclicShear, Oblique) {
   }
 }
 
-/// Steps that slide, not those that hold a joint exactly at its friction limit.
+/// Steps exactly at the friction limit (0) are not compared.
 TEST(CyclicShear, StateTellsStickFromSlip) {
   for (const int dim : {2, 3}) {
     model::Model model(cyclic(dim), Tpetra::getDefaultComm());
@@ -89,14 +89,14 @@ TEST(CyclicShear, StateTellsStickFromSlip) {
   }
 }
 
-/// A block that swings between +-D = 0.5 with tied sides: from D at even times to -D at odd ones.
+/// Returns a block with tied sides under cyclic displacement: D = 0.5 at even times, -D at odd times.
 model::Scene swinging() {
   auto scene = cyclic(2, {"Boundary conditions.moved.displacement={0.5*cos(pi*t), -0.1}", "Mesh.cells={1, 2}"});
   tie_sides(scene);
   return scene;
 }
 
-/// 1000 cycles; 20 of them in parallel, where they would take long and drift no more.
+/// 1000 cycles; 20 in parallel to save time.
 TEST(CyclicShear, DoesNotDrift) {
   model::Model model(swinging(), Tpetra::getDefaultComm());
   const int steps = model.mesh().comm->getSize() == 1 ? 2000 : 40;
@@ -104,9 +104,9 @@ TEST(CyclicShear, DoesNotDrift) {
   expect_joint(model, expected(2, {1, 0, 0}, 0.18, 0.23));
 }
 
-/// The work of a cycle is 4 mu N (D - S) = 0.1656, at any number of steps that stop where sliding begins and ends.
+/// The work per cycle is 4 mu N (D - S) = 0.1656, for any number of steps that include the beginning and end of slip.
 TEST(CyclicShear, DissipatedWork) {
-  const Real begin = std::acos((0.5 - 2 * 0.27) / 0.5) / M_PI;  // of sliding, in every half cycle
+  const Real begin = std::acos((0.5 - 2 * 0.27) / 0.5) / M_PI;  // beginning of slip in every half cycle
   for (const int substeps : {1, 7}) {
     model::Model model(swinging(), Tpetra::getDefaultComm());
     Real work = 0, d = 0, l_t = 0, t = 0;

@@ -1,12 +1,12 @@
-// Work that slip and dilation do on meshes, step by step and face by face, and anisotropic damage beside the sum over
-// all steps.
+// Work of slip and dilation on meshes, for each step and face; anisotropic damage compared with the sum over all
+// steps.
 #include "base/over_ranks.hpp"
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// The outputs on owned fracture faces after a step, vectors in the frame of the face.
+/// Outputs on owned fracture faces after a step; vectors in the frame of the face.
 struct Faces {
   std::vector<Real> plastic, traction, history, error, damage, state;
 
@@ -24,7 +24,7 @@ struct Segment {
   std::array<Real, 2> a, b;
 };
 
-/// sum of |<m.b> - <m.a>| for the direction of u.
+/// Returns the sum of |<m.b> - <m.a>| over the segments, for the direction m of u.
 Real history_along(const std::vector<Segment>& path, const std::array<Real, 2>& u) {
   const Real size = std::hypot(u[0], u[1]);
   const auto along = [&](const auto& v) { return std::max((u[0] * v[0] + u[1] * v[1]) / size, Real(0)); };
@@ -38,7 +38,7 @@ Real length(const std::vector<Segment>& path) {
   return sum;
 }
 
-/// After every step visit(faces, faces before).
+/// Runs all steps and calls visit(faces, faces before) after each.
 template <class Visit>
 void run(model::Model& model, const Visit& visit) {
   Faces before(model);
@@ -52,7 +52,7 @@ void run(model::Model& model, const Visit& visit) {
   }
 }
 
-/// lambda . du^p >= 0, the normal part with dilation that wears.
+/// Checks lambda . du^p >= 0; the normal part includes dilation with wear.
 void expect_dissipation(const std::string& name, const std::vector<std::string>& overrides) {
   SCOPED_TRACE(name);
   model::Model model(read_scene(name, overrides), Tpetra::getDefaultComm());
@@ -101,7 +101,7 @@ TEST(AnisotropicDamage, IsThatOfTheSumOverAllStepsIn3D) {
       const Real *p = &now.plastic[3 * f + 1], *old = &before.plastic[3 * f + 1], *traction = &now.traction[3 * f];
       paths[f].push_back({{old[0], old[1]}, {p[0], p[1]}});
       const Real size = std::hypot(p[0], p[1]);
-      if (size < 5e-3) continue;  // where sides pass into each other
+      if (size < 5e-3) continue;  // near sector boundaries
       const Real exact = history_along(paths[f], {p[0], p[1]});
       EXPECT_LE(std::abs(now.history[f] - exact), now.error[f] * length(paths[f]) + 1e-9) << f;
       EXPECT_NEAR(1 - now.damage[f], 0.7 + 0.3 * std::exp(-now.history[f] / 10), 1e-12);
@@ -112,7 +112,7 @@ TEST(AnisotropicDamage, IsThatOfTheSumOverAllStepsIn3D) {
     }
   });
   EXPECT_TRUE(anywhere(*model.mesh().comm, slips > 50));
-  EXPECT_TRUE(anywhere(*model.mesh().comm, largest_error > 0));  // more directions than there is room for
+  EXPECT_TRUE(anywhere(*model.mesh().comm, largest_error > 0));  // more directions than the table can store
   EXPECT_LT(largest_error, 1e-3);
 }
 

@@ -1,15 +1,15 @@
-// A block whose sides are free of traction: no uniform stress. It sticks everywhere, so that loads add up. The numbers
-// are those of quadratic finite elements with a doubled displacement on the fracture and a spring between, on meshes
-// graded towards the sides; the last digits, in brackets, are uncertain.
+// Block with traction-free sides, hence without uniform stress. The joint sticks everywhere, so loads superpose.
+// Reference: quadratic finite elements with double nodes on the fracture and a spring between them, on meshes graded
+// towards the sides. The last digits, in brackets, are uncertain.
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// What is compared, of a fracture of unit length.
+/// Compared quantities of a fracture of unit length.
 struct Answer {
   Vector3 force;                    ///< resultant traction per width
-  Vector3 jump_centre, jump_side;   ///< at the centre of the fracture and at its end x = 0, where nodes must be
+  Vector3 jump_centre, jump_side;   ///< at the centre of the fracture and at its end x = 0; needs nodes there
   Vector3 above_centre, above_end;  ///< displacement of the side + at the centre and at x = 1
 };
 
@@ -46,7 +46,7 @@ Answer answer(model::Model& model) {
   return a;
 }
 
-/// n cells along the fracture; a slab is one cell thick.
+/// Returns the scene with n cells along the fracture; in 3D the slab is one cell thick.
 model::Scene block(int dim, const Discretisation& d, int n, std::vector<std::string> overrides = {}) {
   auto scene = read_scene(fmt::format("verification/free_sides_{}d.xml", dim), d.with(overrides));
   scene.mesh.cells = dim == 2 ? std::vector<int>{n, n} : std::vector<int>{n, 1, n};
@@ -54,7 +54,7 @@ model::Scene block(int dim, const Discretisation& d, int n, std::vector<std::str
   return scene;
 }
 
-/// The same on a mesh of gmsh with cells that get smaller towards the ends of the fracture.
+/// Returns the scene on a Gmsh mesh, refined towards the ends of the fracture.
 model::Scene graded_block(int dim, const Discretisation& d) {
   auto scene = read_scene(fmt::format("verification/free_sides_{}d.xml", dim));
   scene.mesh_file.emplace();
@@ -66,9 +66,9 @@ model::Scene graded_block(int dim, const Discretisation& d) {
   return scene;
 }
 
-/// Errors after compression d = (0, -1) and shear d = (1, 0): of the resultants T = 0.49003(2) and N = 2.75091(2)
-/// relative to them, of displacements relative to d: tangential jump at the centre 0.2894(1) and at x = 0 0.1647(2),
-/// u_x on the side + at x = 1 0.164837(2).
+/// Errors under compression d = (0, -1) and shear d = (1, 0). Resultants T = 0.49003(2), N = 2.75091(2): relative
+/// errors. Displacements, relative to d: tangential jump 0.2894(1) at the centre and 0.1647(2) at x = 0; u_x of side +
+/// at x = 1 0.164837(2).
 struct Errors {
   Real T, N, jump_centre, jump_side, above_end, jump_compressed;
 };
@@ -87,8 +87,9 @@ Errors errors(int dim, const model::Scene& scene) {
           std::max(std::abs(compressed.jump_centre[0]), std::abs(compressed.jump_side[0]))};
 }
 
-/// 16 cells along the fracture are the fewest with 1e-3 at order 2. The jump at the free end converges with order one.
-/// In compression the jump vanishes by symmetry, which tetrahedra below and above the fracture do not have.
+/// Order 2 needs at least 16 cells along the fracture for errors of 1e-3. The jump at the free end converges with
+/// order one. In compression the jump vanishes by symmetry, except for tetrahedra, which are not symmetric about the
+/// fracture.
 TEST(FreeSides, CompressedAndSheared) {
   for (const int dim : {2, 3})
     for (const auto& d : discretisations(dim)) {
@@ -107,7 +108,7 @@ TEST(FreeSides, CompressedAndSheared) {
     }
 }
 
-/// At order 2 all numbers to 1e-3, also at the free ends.
+/// With order 2, all quantities have errors of 1e-3, also at the free ends.
 TEST(FreeSides, GradedMesh) {
   for (const int dim : {2, 3})
     for (const auto& d : discretisations(dim)) {
@@ -126,9 +127,9 @@ TEST(FreeSides, GradedMesh) {
     }
 }
 
-/// The push test of Wollmann (2024): jump 0.999999999984 at the centre, u_x on the side + from 1 at the centre to
-/// 1.000234676 at the end, N = 2000999.654 Pa. The joint is 1e11 times softer than the rock: a direct solver finds more
-/// digits of such jumps than the tolerance of Newton's method asks for.
+/// Push test of Wollmann (2024): jump 0.999999999984 at the centre, u_x of side + from 1 at the centre to 1.000234676
+/// at the end, N = 2000999.654 Pa. The joint is 1e11 times softer than the rock. A direct solver gives more digits of
+/// such jumps than Newton's tolerance requires.
 TEST(FreeSides, Push) {
   for (const int dim : {2, 3})
     for (const auto& d : discretisations(dim)) {

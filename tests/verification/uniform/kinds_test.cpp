@@ -1,8 +1,8 @@
-// Two joints of different laws in series in one scene: Coulomb's with the closure of Barton and Bandis, and Barton and
-// Choubey's with linear closure and dilation. They carry the same traction: with C = H/G + sum 1/K_t, k_n = (lambda +
-// 2G)/H, and u_p the slip of the one joint that slides,
-//   N/k_n + Du N/(Du K_1 + N) + N/K_2 = -d_n + tan(theta) u_p,   lambda_t C = d_t - u_p,   lambda_t = b(N) if it
-//   slides.
+// Two joints in series with different laws: Coulomb with the closure of Barton and Bandis; Barton and Choubey with
+// linear closure and dilation. Both have the same traction. With C = H/G + sum 1/K_t, k_n = (lambda + 2G)/H, and the
+// slip u_p of the slipping joint,
+//   N/k_n + Du N/(Du K_1 + N) + N/K_2 = -d_n + tan(theta) u_p,   lambda_t C = d_t - u_p,
+//   lambda_t = b(N) if it slips.
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
@@ -14,7 +14,7 @@ Real closed_planar(Real N) { return Du * N / (Du * 50e9 + N); }
 Real tangent(Real degrees) { return std::tan(degrees * M_PI / 180); }
 Real rough_bound(Real N, Real roughness = 8) { return N * tangent(25 + roughness * std::log10(40e6 / N)); }
 
-/// The compression under which the joints close and dilate as far as the top has moved down.
+/// Returns the compression for which elastic deformation and closure equal the displacement of the top plus dilation.
 template <class Slip>
 Real compression(Real d_n, Real dilation, const Slip& slip) {
   Real low = 0, high = 1e8;
@@ -26,8 +26,8 @@ Real compression(Real d_n, Real dilation, const Slip& slip) {
 }
 
 struct Sliding {
-  const char* fracture;  ///< the one that slides
-  Real mu;               ///< of the planar joint
+  const char* fracture;  ///< name of the slipping joint
+  Real mu;               ///< friction of the planar joint
 };
 
 void expect_column(model::Model& model, const Sliding& sliding, Real d_t) {
@@ -43,7 +43,7 @@ void expect_column(model::Model& model, const Sliding& sliding, Real d_t) {
     auto e = UniformJoint{l_t, -N, slides ? u_p : 0, opening, closure, is_rough ? 10e9 : 20e9}.along(
         {1, 0, 0}, model.mesh().dim());
     e.fracture = fracture;
-    e.tolerance = 1e-9 * 1e-3;  // of the largest displacement
+    e.tolerance = 1e-9 * 1e-3;  // relative to the largest displacement
     e.traction_tolerance = 1e-9 * 2e6;
     expect_joint(model, e);
   }
@@ -66,7 +66,7 @@ TEST(KindsOfJoints, InOneScene) {
       }
 }
 
-/// Sticking joints carry a uniform traction, and each face has the strength of its place.
+/// Sticking joints have a uniform traction; the strength of each face depends on its position.
 TEST(KindsOfJoints, StrengthIsThatOfTheFace) {
   for (const int dim : {2, 3}) {
     model::Model model(read_scene(fmt::format("verification/joint_kinds_{}d.xml", dim),

@@ -1,5 +1,5 @@
-// Every law of joints on a mesh: under uniform stress each face of the block does what a point in a column of the same
-// stiffness does, to and fro, in 3D along no axis of the joint's frame.
+// Every joint law on a mesh. Under uniform stress, each face behaves like a point in a column of the same stiffness,
+// under cyclic loads, in 3D in a general direction of the joint frame.
 #include "model/point.hpp"
 #include "verification/uniform/states.hpp"
 
@@ -10,7 +10,7 @@ using Overrides = std::vector<std::string>;
 
 struct Law {
   const char* name;
-  Overrides entries;  ///< of the joint
+  Overrides entries;  ///< entries of the joint
 };
 
 const std::vector<Law> all_laws = {
@@ -54,7 +54,7 @@ Overrides along_path(const std::string& table) {
           fmt::format("Time.end={}", path.size()), fmt::format("Time.steps={}", path.size())};
 }
 
-/// Gives the joint the entries of a law.
+/// Sets the entries of a law in the joint.
 void set(physics::JointMaterial& joint, const Law& law) {
   using Material = physics::JointMaterial;
   const std::map<std::string, std::string Material::*> roles = {

@@ -1,14 +1,15 @@
-// Every regime of the joint law on one block, sheared and compressed or pulled in one step. Rock and joint are springs
-// in series, k_n = (lambda + 2G)/H and 1/K_s = H/G + 1/K_t, so that the compression N solves a quadratic equation:
-//   stick  N/k_n + V(N) = g0 + tan(theta)|u^p_old| - d_n,                                lambda_t = K_s (d_t - u^p_old)
-//   slip   N/k_n + V(N) + mu tan(theta) N/K_s = g0 + tan(theta)|d_t| - d_n,              |lambda_t| = mu N
-// with the closure V(N) = Du N/(Du K_n + N). Numbers below are its roots in double precision.
+// Every regime of the joint law on one block, with shear and compression or tension in one step. Rock and joint are
+// springs in series, k_n = (lambda + 2G)/H and 1/K_s = H/G + 1/K_t. The compression N is the root of a quadratic
+// equation:
+//   stick  N/k_n + V(N) = g0 + tan(theta)|u^p_old| - d_n,                  lambda_t = K_s (d_t - u^p_old)
+//   slip   N/k_n + V(N) + mu tan(theta) N/K_s = g0 + tan(theta)|d_t| - d_n,  |lambda_t| = mu N
+// with the closure V(N) = Du N/(Du K_n + N). Numbers below are the roots in double precision.
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Displacement of the top, then the state of the joint after a single step, or one after "slip".
+/// Displacement of the top, and the state of the joint after one step, or after one step that follows "slip".
 struct Regime {
   const char* name;
   Real d_t, d_n, l_t, l_n, u_p, opening;
@@ -32,7 +33,7 @@ Expected expected(const Regime& r, const Vector3& m, int dim) {
   return UniformJoint{r.l_t, r.l_n, r.u_p, r.opening, closure, 2}.along(m, dim);
 }
 
-/// Tied sides allow any direction of the shear, here one along no axis.
+/// Tied sides allow shear in a general direction.
 TEST(JointRegimes, ExactStates) {
   for (const int dim : {2, 3})
     for (const auto& d : discretisations(dim))
@@ -64,7 +65,7 @@ TEST(JointRegimes, ExactStates) {
         }
 }
 
-/// What follows slip is also what one step finds from the plastic jump that slip leaves: along t in 2D, t2 in 3D.
+/// A step after slip equals one step from the initial plastic jump that the slip causes: along t in 2D, t2 in 3D.
 TEST(JointRegimes, FromAPlasticJump) {
   for (const int dim : {2, 3})
     for (const auto& r : regimes) {
@@ -86,7 +87,7 @@ TEST(JointRegimes, FromAPlasticJump) {
     }
 }
 
-/// The chain of the scene as it is: slip, unloaded to stick, reverse slip.
+/// The steps of the scene: slip, unloading to stick, reverse slip.
 TEST(JointRegimes, Scene) {
   for (const int dim : {2, 3}) {
     model::Model model(read_scene(fmt::format("verification/regimes_{}d.xml", dim)), Tpetra::getDefaultComm());
@@ -99,8 +100,8 @@ TEST(JointRegimes, Scene) {
   }
 }
 
-/// The push and pull tests of Wollmann (2024) without lateral strain: G = 1 MPa, lambda = 1 kPa, K_t = 1e-5 Pa/m. A
-/// push sticks with u^e = 1/(1 + K_t H/G) = 1 - 1e-11 and lambda_n = -(2G + lambda); a pull opens.
+/// Push and pull tests of Wollmann (2024) without lateral strain: G = 1 MPa, lambda = 1 kPa, K_t = 1e-5 Pa/m. Under
+/// push the joint sticks with u^e = 1/(1 + K_t H/G) = 1 - 1e-11 and lambda_n = -(2G + lambda); under pull it opens.
 TEST(JointRegimes, PushAndPull) {
   const Real stiffness = 2.001e6;
   for (const int dim : {2, 3})

@@ -1,12 +1,12 @@
-// Laws with a history on meshes: the block of cyclic_2d.xml and cyclic_3d.xml, N = 0.3 and K_s = 2/3, whose faces all
-// do what one point does. In 3D it is sheared along no axis of the joint's frame.
+// Slip-dependent laws on meshes: the block of cyclic_2d.xml and cyclic_3d.xml, N = 0.3 and K_s = 2/3. All faces behave
+// like one point. In 3D the shear has a general direction of the joint frame.
 #include "base/over_ranks.hpp"
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// The block whose top is displaced by `top`, e.g. {d(t), -0.1}, where d(k) is the k-th value of the path.
+/// Returns the block with the displacement `top` of its top, e.g. {d(t), -0.1}; d(k) is the k-th value of the path.
 model::Scene block(int dim, std::vector<std::string> overrides, const std::vector<Real>& path, const std::string& top) {
   std::vector<Real> times = {0}, from_rest = {0};
   for (const Real d : path) {
@@ -29,7 +29,8 @@ std::string along(int dim) {
   return dim == 2 ? "{tangential(t), -0.1}" : "{0.6*tangential(t), -0.8*tangential(t), -0.1}";
 }
 
-/// Shears a block along the path; after each step the plastic jump is u[k], the rest follows from the column.
+/// Shears a block along the path and compares each step with the plastic jump u[k]; other values follow from the
+/// column.
 void expect_slip(model::Model& model, const std::vector<Real>& path, const std::vector<Real>& u, Real digits) {
   for (std::size_t k = 0; k < path.size(); ++k) {
     SCOPED_TRACE(fmt::format("step {}", k + 1));
@@ -60,7 +61,7 @@ TEST(SlipHistory, WeakeningOnEveryMesh) {
     }
 }
 
-/// The largest runaway slip that the faces tell, on any rank.
+/// Returns the largest runaway slip of all faces. Collective.
 Real runaway(model::Model& model) {
   Real most = 0;
   for (const auto& output : model.system().outputs(model.state()))
@@ -69,9 +70,9 @@ Real runaway(model::Model& model) {
   return base::max_over_ranks(*model.mesh().comm, most);
 }
 
-/// Where the bound falls faster than the column unloads, by 1.2 or 4.5 against 2/3, slip jumps: friction that weakens
-/// over 0.05, and damage with L = 0.02, b = 0.18 + 0.09 exp(-u/L). The state after the jump is the law's, by hand or by
-/// a fixed point; the slip that ran away is told, and none where friction weakens slowly.
+/// The bound decreases faster than the column unloads (by 1.2 or 4.5 against 2/3), so slip jumps: friction that
+/// weakens over 0.05; damage with L = 0.02, b = 0.18 + 0.09 exp(-u/L). The state after the jump obeys the law (by hand
+/// or by a fixed-point iteration). The runaway slip is reported; it is zero for slow weakening.
 TEST(SlipHistory, RunsAwayOnEveryMesh) {
   const std::vector<std::string> weakens = {"Materials.joint.friction=slip weakening",
                                             "Materials.joint.residual friction coefficient=0.4"};
@@ -103,7 +104,7 @@ TEST(SlipHistory, RunsAwayOnEveryMesh) {
       }
 }
 
-/// Values with twelve digits, not from this program; those of the tests at a point.
+/// Independent values with twelve digits, as in the tests at a point.
 TEST(SlipHistory, DamageOnEveryMesh) {
   const std::vector<Real> path = {0.2, 0.4, 0.6, 0.3, 0, -0.3, -0.6, -0.3};
   const std::vector<Real> u = {
@@ -119,19 +120,19 @@ TEST(SlipHistory, DamageOnEveryMesh) {
     }
 }
 
-/// Two sides, each with its wear: slip to u wears the one, and slip beyond 0 meets the other one whole, which slips as
-/// far as the first did.
+/// Two sides with separate wear: slip to u wears the first side. Slip beyond 0 meets the intact second side, with the
+/// same slip as on the first.
 TEST(SlipHistory, AnisotropicDamage) {
   const std::vector<std::string> damage = {
       "Materials.joint.friction coefficient=0.9", "Materials.joint.damage=anisotropic",
       "Materials.joint.residual part of friction=0.66666666666666667", "Materials.joint.damage length of friction=0.2"};
-  const Real u = 0.299855684813;  // as above, of first loading
+  const Real u = 0.299855684813;  // as above, for first loading
   for (const int dim : {2, 3}) expect_slip(dim, damage, {0.6, 0, -0.6}, {u, u, -u}, 1e-9);
 }
 
-/// Pulled: the rock of stiffness 3 (plane strain, height 1) is in series with a joint that does not deform, t = 3 (d -
-/// o). With T = 0.06 and o_f = 2 G/T = 0.1 it is whole up to T, softens by t = T (1 - o/o_f), releases along t/t_max =
-/// o/o_max, and is open from o_f on.
+/// Tension: rock of stiffness 3 (plane strain, height 1) in series with a joint without elastic deformation, t = 3 (d
+/// - o). With T = 0.06 and o_f = 2 G/T = 0.1, it is intact up to T, softens with t = T (1 - o/o_f), unloads with
+/// t/t_max = o/o_max, and is open from o_f.
 TEST(SlipHistory, BondOnEveryMesh) {
   const std::vector<Real> pulled = {0.01, 0.03, 0.06, 0.04, 0.02, 0.08, 0.12};
   const Real T = 0.06, o_f = 0.1;
@@ -148,7 +149,7 @@ TEST(SlipHistory, BondOnEveryMesh) {
         SCOPED_TRACE(k);
         const auto report = model.step_to(k + 1);
         ASSERT_TRUE(report.converged) << report.reason;
-        Real o = std::max((pulled[k] - T / 3) / (1 - T / (3 * o_f)), Real(0));  // on the line
+        Real o = std::max((pulled[k] - T / 3) / (1 - T / (3 * o_f)), Real(0));  // on the softening line
         if (o < widest) o = pulled[k] / (1 + T * (1 - widest / o_f) / (3 * widest));
         if (o > o_f) o = pulled[k];
         widest = std::max(widest, o);

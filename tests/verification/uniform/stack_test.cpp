@@ -1,6 +1,6 @@
-// Fractures in series carry the same traction: while all stick lambda_t = d_t/(H/G + sum 1/K_t), the compression solves
-// N/k_n + sum V(N) = -d_n, and the fracture with the least friction slides first and alone, at lambda_t = mu N.
-// H = G = lambda = 1, Du = 0.05, K_n = 5, d_n = -0.1.
+// Fractures in series have the same traction. While all stick, lambda_t = d_t/(H/G + sum 1/K_t), and the compression
+// is the root of N/k_n + sum V(N) = -d_n. Only the fracture with the smallest friction slips, at lambda_t = mu N. H =
+// G = lambda = 1, Du = 0.05, K_n = 5, d_n = -0.1.
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
@@ -11,7 +11,7 @@ struct Joint {
   Real K_t, mu;
 };
 
-/// N is the root in double precision.
+/// Joints and their compression N, the root in double precision.
 struct Stack {
   std::vector<Joint> joints;
   Real N;

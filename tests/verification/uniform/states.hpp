@@ -1,20 +1,19 @@
-// Blocks with a horizontal fracture under uniform stress: their scenes, and what is expected of the joint.
+// Blocks with a horizontal fracture under uniform stress: scenes and expected states of the joint.
 #pragma once
 
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
 
-/// "Tables.TABLE.values={...}", an override of a scene.
+/// Returns the override "Tables.TABLE.values={...}".
 inline std::string values(const std::string& table, const std::vector<Real>& v) {
   return fmt::format("Tables.{}.values={{{:.17g}}}", table, fmt::join(v, ", "));
 }
 
-/// Sides of a block that let the stress be uniform: loaded with its traction, as the scene has it, or tied to each
-/// other.
+/// Sides of a block that permit uniform stress: loaded by its traction (as in the scene), or tied to each other.
 enum class Sides { loaded, tied };
 
-/// Replaces the tractions on the sides of a block by periodicity.
+/// Replaces the tractions on the sides of a block by periodic conditions.
 inline void tie_sides(model::Scene& scene) {
   scene.mesh.periodic = {"x", "y"};
   scene.mesh.periodic.resize(scene.mesh.lower_corner.size() - 1);
@@ -23,10 +22,10 @@ inline void tie_sides(model::Scene& scene) {
     c = c->second.traction.empty() ? std::next(c) : conditions.erase(c);
 }
 
-/// Solvers stop at 1e-11, relative to the loads, which are of order one here.
+/// Solvers stop at 1e-11, relative to the loads; these have magnitude one here.
 constexpr Real tolerance = 1e-11;
 
-/// A joint with traction l_t m + l_n n, plastic jump u_p m, opening, closure B(l_n) and tangential stiffness K_t.
+/// State of a joint: traction l_t m + l_n n, plastic jump u_p m, opening, closure B(l_n), tangential stiffness K_t.
 struct UniformJoint {
   Real l_t, l_n, u_p, opening, closure, K_t;
 

@@ -1,5 +1,5 @@
-// Shear whose direction turns, at constant normal force: mu N = 0.18, rock and joint in series K_s = 2/3, so that the
-// elastic displacement while sliding is S = 0.27.
+// Shear with rotating direction, at constant normal force: mu N = 0.18, K_s = 2/3 of rock and joint in series. The
+// elastic displacement during slip is S = 0.27.
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
@@ -11,7 +11,7 @@ model::Scene turning(const Discretisation& d, const std::vector<std::string>& ov
   return read_scene("verification/turning_shear_3d.xml", d.with(overrides));
 }
 
-/// From (0, 0) to (D, 0) in one step, then to (D, 0.4) in n equal ones.
+/// Shears from (0, 0) to (D, 0) in one step, then to (D, 0.4) in n equal steps.
 void go_round_the_corner(model::Model& model, int n) {
   ASSERT_TRUE(model.step_to(1).converged);
   for (int k = 1; k <= n; ++k) {
@@ -20,8 +20,8 @@ void go_round_the_corner(model::Model& model, int n) {
   }
 }
 
-/// After n steps of implicit Euler, which is the radial return: u^p += (1 - S/|e|) e where e = d_t - u^p is longer than
-/// S, and lambda_t = K_s (d_t - u^p).
+/// Returns the state after n steps of implicit Euler (radial return): u^p += (1 - S/|e|) e if e = d_t - u^p is longer
+/// than S, and lambda_t = K_s (d_t - u^p).
 Expected after_corner(int n, Real tolerance) {
   std::array<Real, 2> p = {D - S, 0}, e;
   for (int k = 1; k <= n; ++k) {
@@ -33,7 +33,7 @@ Expected after_corner(int n, Real tolerance) {
   return {{0, 0, 1}, {l[0] / 2, l[1] / 2, 0}, {p[0], p[1], 0}, l, tolerance, tolerance};
 }
 
-/// The same numbers from a computation of its own.
+/// Compares after_corner() with an independent computation.
 TEST(TurningShear, ReferenceOfTheCorner) {
   for (const auto& [n, x, y] : {std::tuple{1, 0.100705113900191, 0.149192761333617},
                                 {4, 0.086703396577055, 0.157741944396543},
@@ -54,8 +54,8 @@ TEST(TurningShear, Corner) {
     }
 }
 
-/// Along the second leg, of length v, the angle psi between d_t - u^p and the velocity follows tan(psi/2) =
-/// tan(psi_0/2) exp(-v/S), psi_0 = 90 degrees (Krieg and Krieg 1977): first order in the time step.
+/// Along the second part, of length v, the angle psi between d_t - u^p and the velocity is tan(psi/2) = tan(psi_0/2)
+/// exp(-v/S), psi_0 = 90 degrees (Krieg and Krieg 1977). The error is first order in the time step.
 TEST(TurningShear, FirstOrderInTime) {
   const Real psi = 2 * std::atan(std::exp(-0.4 / S));
   const Vector3 exact = {bound * std::sin(psi), bound * std::cos(psi), 0};
@@ -73,8 +73,8 @@ TEST(TurningShear, FirstOrderInTime) {
   EXPECT_LT(errors.back(), 2e-3);
 }
 
-/// Turns with |d_t| = D until the state repeats, turned with the load. Then u^p runs on a circle of radius
-/// -S sin(a/2) + sqrt(D^2 - S^2 cos^2(a/2)), a the turn per step, and the traction is 90 degrees - a/2 ahead of it.
+/// Rotates with |d_t| = D until the state is periodic in the rotating frame. Then u^p is on a circle of radius -S
+/// sin(a/2) + sqrt(D^2 - S^2 cos^2(a/2)), with the angle a per step. The traction leads it by 90 degrees - a/2.
 void expect_circle(const Discretisation& d, const std::string& cells, int n, Real radius) {
   SCOPED_TRACE(fmt::format("{}, {} steps per turn", d.name(), n));
   model::Model model(turning(d, {"Boundary conditions.moved.displacement={0.5*min(t, 1)*cos(2*pi*max(t - 1, 0)), "
@@ -109,8 +109,7 @@ TEST(TurningShear, Circle) {
   expect_circle({"hexahedron", 1}, "{1, 1, 2}", 64, 0.407792719656629);
 }
 
-/// Means over the fracture of what does not depend on the frame: normal jump, size of the tangential one, the same of
-/// the traction.
+/// Compares frame-independent means over the fracture: normal and tangential jump and traction.
 void expect_invariants(model::Model& model, const Expected& e) {
   const Outputs out(model);
   const auto expect_same = [&](const char* name, Real normal, const Vector3& tangential) {
@@ -122,8 +121,8 @@ void expect_invariants(model::Model& model, const Expected& e) {
   expect_same("traction local", e.traction[2], {e.traction[0], e.traction[1], 0});
 }
 
-/// Turned as a whole, moved by 1000 km, sides swapped, renumbered: the same. A block of 1 m that is turned and far away
-/// has coordinates that are rounded to far epsilon, 4e-10 of a cell; strains inherit some of these.
+/// The result does not depend on rotation, translation by 1000 km, order of sides, and numbering. Far away, the
+/// coordinates of a block of 1 m are rounded to 4e-10 of a cell, with a corresponding error of the strains.
 TEST(TurningShear, DoesNotSeeTheFrame) {
   const Vector3 far = {0.6e6, 0, 0.8e6};
   for (const auto& d : discretisations(3))

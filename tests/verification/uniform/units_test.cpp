@@ -1,4 +1,4 @@
-// One problem in four systems of units: the same answer, in the same number of iterations.
+// One problem in four systems of units: equal results and numbers of iterations.
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
@@ -9,8 +9,8 @@ struct Units {
   Real length, stress;  ///< in m and Pa
 };
 
-/// A block of 10 m that slips: H = 10 m, G = 12 GPa, lambda = 8 GPa, K_t = 5 GPa/m, mu = 0.6, theta = 5 degrees,
-/// g0 = 0.1 mm, Du = 0.2 mm, K_n = 30 GPa/m, d = (20, -1) mm.
+/// Returns a slipping block: H = 10 m, G = 12 GPa, lambda = 8 GPa, K_t = 5 GPa/m, mu = 0.6, theta = 5 degrees, g0 =
+/// 0.1 mm, Du = 0.2 mm, K_n = 30 GPa/m, d = (20, -1) mm.
 model::Scene block(int dim, const Discretisation& d, const Units& u) {
   const std::vector<std::pair<std::string, Real>> entries = {
       {"Materials.rock.shear modulus", 12e9 / u.stress},
@@ -32,7 +32,7 @@ model::Scene block(int dim, const Discretisation& d, const Units& u) {
   return scene;
 }
 
-/// The roots of the series block, see regimes_test.cpp, in 60 digits.
+/// Roots of the series block in 60 digits, see regimes_test.cpp.
 TEST(Units, DoNotMatter) {
   const Real l_t = 4.480859218092e6, l_n = -7.468098696819e6, u_p = 1.536977880797e-2, opening = 1.333780842756e-3;
   for (const int dim : {2, 3})
