@@ -1,4 +1,4 @@
-// The constant of the augmentation steers iterates; results must not depend on it.
+// The augmentation constant affects iterates only; results must not depend on it.
 #include "verification/contact/states.hpp"
 
 #include <iostream>
@@ -6,8 +6,8 @@
 namespace sprekk::tests {
 namespace {
 
-/// Within a factor of three Newton takes a like number of steps; far from there, too, since the constant is corrected
-/// once faces have moved.
+/// For constants within a factor of three, Newton needs similar numbers of steps. This holds also for other constants,
+/// because calibration corrects the constant after the first movements of faces.
 void expect_no_influence(const std::string& name) {
   auto scene = read_scene(name);
   const Real c = scene.augmentation;

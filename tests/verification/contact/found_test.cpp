@@ -1,4 +1,4 @@
-// Scenes on which a random search has once found the solver to fail.
+// Scenes in which the solver once failed, found by random search.
 #include "verification/contact/states.hpp"
 
 namespace sprekk::tests {
@@ -8,28 +8,28 @@ std::string failure(const std::string& scene, const std::vector<std::string>& ov
   return run(read_scene(scene, overrides)).failure;
 }
 
-/// Steps towards zero of a search along a free motion grew too short for the arithmetic: it went on for ever.
+/// The search along a free motion had step lengths below the floating-point resolution and did not terminate.
 TEST(Found, PiecesCutOut) { EXPECT_EQ(failure("contact/network_cut_2d.xml"), ""); }
 
-/// Faces that slide back close what they had opened, and their friction falls: they slip at once, to a state that is
-/// far away, and only tethers that leave the joint's own stretch alone lead there.
+/// On slip reversal, faces lose their dilation and thus their friction. They slip at once to a distant state. Only
+/// tethers that do not resist the elastic jump lead there.
 TEST(Found, SoftJointsThatDilate) {
   EXPECT_EQ(failure("contact/network_soft_2d.xml", {"Time.end=3", "Time.steps=3"}), "");
 }
 
-/// Layers that are soft in bending by the square of their thickness over their length: tethers that are weak for the
-/// rock at a fracture hold them fast.
+/// The bending stiffness of the layers is small by (thickness/length)^2. Tethers that are weak relative to the rock at
+/// a fracture still constrain the layers.
 TEST(Found, ThinLayers) { EXPECT_EQ(failure("contact/thin_layers_2d.xml"), ""); }
 
-/// The joints' own stretch is long: a face that parts has moved far, and dilates; it must slide, not spring back.
+/// The elastic jumps are long. A face that opens has moved far and dilates; it must slide and not return elastically.
 TEST(Found, BricksWithSoftJointsThatDilate) {
   const auto found = run(read_scene("contact/masonry_soft_2d.xml"));
   EXPECT_EQ(found.failure, "");
   for (const int newton : found.newton_iterations) EXPECT_LE(newton, 20);
 }
 
-/// A hundred thousandth as thick as they are long: their motions are long next to what deforms them, and no direct
-/// solve leaves less than the rounding of these motions.
+/// Thickness over length is 1e-5: displacements are large relative to the deformation. The residual of a direct solve
+/// is limited by round-off of the displacements.
 TEST(Found, VeryThinLayers) {
   constexpr Real h = 1e-5;
   std::vector<std::string> entries = {"Mesh.cells={20, 5}", fmt::format("Mesh.upper corner={{1, {:.17g}}}", 5 * h),
@@ -41,7 +41,7 @@ TEST(Found, VeryThinLayers) {
   EXPECT_EQ(failure("contact/layers_2d.xml", entries), "");
 }
 
-/// The displacement is so large that its rounding is seen in the jumps.
+/// The displacement is so large that its round-off is visible in the jumps.
 TEST(Found, StiffRockOnSoft) {
   EXPECT_EQ(failure("contact/soft_foundation_2d.xml", {"Time.end=1", "Time.steps=1"}), "");
 }

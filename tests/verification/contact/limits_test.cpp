@@ -1,4 +1,4 @@
-// Joints whose parameters go to a limit, on fractures that cross: the results go to those of the limit, in first order.
+// Joint parameters near a limit, on crossing fractures: results converge to the limit with first order.
 #include "verification/contact/states.hpp"
 
 #include <functional>
@@ -10,7 +10,7 @@ using Change = std::function<void(model::Material&, Real)>;
 
 struct Limit {
   std::string name;
-  Change near, at;  ///< the limit is at 0
+  Change near, at;  ///< near: parameter e close to the limit; at: limit e = 0
 };
 
 const std::vector<Limit> limits = {

@@ -1,4 +1,4 @@
-// Blocks that nothing holds: no equilibrium, said in words, or rest where nothing pulls.
+// Floating blocks: an error message without equilibrium, or rest without a load.
 #include "verification/contact/states.hpp"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ TEST(Loose, SlidesDown) {
   }
 }
 
-/// A force that lifts.
+/// The body force lifts the block.
 TEST(Loose, LiftedWithoutEnd) {
   for (const int dim : {2, 3}) {
     auto scene =
@@ -41,7 +41,7 @@ TEST(Loose, LiftedWithoutEnd) {
   }
 }
 
-/// Pressed and pushed aside, then lifted by its upper side, on which nothing acts along it.
+/// A block under compression and shear is then lifted at its upper side, without tangential force.
 TEST(Loose, LiftedRestsWhereItIs) {
   for (const int dim : {2, 3}) {
     auto scene =

@@ -1,4 +1,5 @@
-// Joints in series, whose slip equilibrium leaves open: least in the sum of squares, whatever ranks and numbers are.
+// Joints in series, with slip not determined by equilibrium: it has the smallest sum of squares, independent of ranks
+// and numbering.
 #include "verification/scenes.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -8,9 +9,9 @@
 namespace sprekk::tests {
 namespace {
 
-/// All at the limit of friction, so that the elastic part of the displacement is known: equal joints slip alike. Where
-/// they dilate, what is free is to slide and lift in one joint as much as to slide back and sink in another. Either way
-/// along an axis.
+/// All joints are at the friction limit, so the elastic part of the displacement is known: equal joints have equal
+/// slip. With dilation, the free motion combines slip with uplift in one joint and reverse slip with settlement in
+/// another. Both shear directions along an axis.
 TEST(JointsInSeries, EqualOnesShareTheSlip) {
   constexpr Real shear = 0.5, G = 1, K_t = 2, mu = 0.5;
   for (const int dim : {2, 3})
@@ -35,8 +36,8 @@ TEST(JointsInSeries, EqualOnesShareTheSlip) {
     }
 }
 
-/// Pressed by a given load, then sheared: joints close while no traction changes, which tells nothing of the stiffness
-/// of the rock. The weakest joint slides, at mu N.
+/// Constant normal load, then shear. Joints close without a change of traction, so this closure gives no information
+/// on the stiffness of the rock. The weakest joint slips at mu N.
 TEST(JointsInSeries, TheWeakestSlidesUnderAGivenLoad) {
   constexpr Real N = 0.1, tau = 0.5 * N, G = 1, compliance = 1 / G + 1.0 / 1 + 1.0 / 2 + 1.0 / 4;
   for (const int dim : {2, 3})
@@ -65,7 +66,7 @@ TEST(JointsInSeries, TheWeakestSlidesUnderAGivenLoad) {
     }
 }
 
-/// Five layers of this thickness.
+/// Returns the scene of five layers of thickness h.
 model::Scene layers(Real h) {
   std::vector<std::string> entries = {fmt::format("Mesh.upper corner={{1, {:.17g}}}", 5 * h),
                                       fmt::format("Tables.shear.values={{0, 0, {0}, -{0}}}", 0.05 * h),
@@ -76,7 +77,7 @@ model::Scene layers(Real h) {
   return read_scene("contact/layers_2d.xml", entries);
 }
 
-/// Jumps of all faces, upper side minus lower one, in the order of their places: joint by joint, from west to east.
+/// Returns the jumps of all faces, upper side minus lower side: joint by joint, from west to east.
 std::vector<Vector3> jumps_in_order(model::Model& model) {
   const auto faces = gathered_faces(model, identity(), {0, 1, 0});
   std::vector<std::size_t> order(faces.centre.size());
@@ -90,8 +91,8 @@ std::vector<Vector3> jumps_in_order(model::Model& model) {
   return jumps;
 }
 
-/// Each joint of equal layers has the same mean slip, and each face the same jump on one rank and, with other numbers,
-/// on all of them; relative to the displacement of the top.
+/// Each joint between equal layers has the same mean slip. Each face has the same jump on one rank as on all ranks
+/// with another numbering, relative to the displacement of the top.
 TEST(JointsInSeries, LayersSlideAlike) {
   for (const Real h : {0.1, 0.01, 0.001}) {
     const auto scene = layers(h);

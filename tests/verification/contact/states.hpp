@@ -1,18 +1,18 @@
-// Whole runs of a scene, and how far the unknowns of two of them are apart.
+// Complete runs of a scene, and the difference between the unknowns of two runs.
 #pragma once
 
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
 
-/// The steps of a scene up to the first that fails: what they took, and the unknowns after each.
+/// Steps of a scene up to the first failure: iterations, and unknowns after each step.
 struct Run {
   std::string failure;
   std::vector<int> newton_iterations, cuts;
-  std::vector<bool> loose;  ///< a piece of rock is held by nothing
+  std::vector<bool> loose;  ///< whether a floating block was reported
   std::vector<fields::BlockVector> states;
   std::vector<std::string> names;  ///< [block]
-  std::vector<Real> scales;        ///< [block] kinematic ones, at the end
+  std::vector<Real> scales;        ///< [block] kinematic scales at the end
 };
 
 inline Run run(const model::Scene& scene) {
@@ -36,7 +36,7 @@ inline Run run(const model::Scene& scene) {
   return result;
 }
 
-/// The largest difference of an unknown after a step, relative to the scales of b. Collective.
+/// Returns the largest difference of an unknown after a step, relative to the scales of b. Collective.
 inline Real distance(const Run& a, const Run& b, std::size_t step) {
   Real largest = 0;
   for (std::size_t k = 0; k < b.scales.size(); ++k) {

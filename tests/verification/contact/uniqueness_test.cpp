@@ -1,4 +1,4 @@
-// Where dilation makes more than one state possible, and that a scene is told so from there on.
+// Non-unique states due to dilation, and the warnings about them.
 #include "laws/shear/linear.hpp"
 #include "laws/friction/coulomb.hpp"
 #include "laws/dilation/constant_angle.hpp"
@@ -11,8 +11,8 @@
 namespace sprekk::tests {
 namespace {
 
-/// A block of height 1, lambda = G = 1, with a joint of K_t = 0.5 and mu = 0.6, so K_s = 1/3 and k_n = 3: slip turns
-/// back in one way only where mu tan(theta)/K_s < 1/k_n, tan(theta) < 5/27.
+/// Block of height 1, lambda = G = 1, with a joint of K_t = 0.5 and mu = 0.6, so K_s = 1/3 and k_n = 3. Slip reversal
+/// is unique only if mu tan(theta)/K_s < 1/k_n, i.e. tan(theta) < 5/27.
 constexpr Real k_n = 3, k_s = 1, K_s = 1 / 3.0, mu = 0.6, limit = 5 / 27.0;
 
 using Joint = laws::JointLaw<laws::LinearShear, laws::CoulombFriction, laws::NormalGap<laws::ConstantDilation>>;
@@ -25,8 +25,8 @@ Joint joint_with(Real tangent) {
   return law;
 }
 
-/// The states of the block whose top is displaced by (d_n, d_t) after a slip by p_old >= 0: those of an open, a
-/// sticking and two sliding joints that satisfy the law.
+/// Returns the contact states that satisfy the law (open, stick, slip in both directions), for a top displacement
+/// (d_n, d_t) after a slip p_old >= 0.
 std::vector<laws::ContactState> states(const Joint& law, Real d_n, Real d_t, Real p_old) {
   using laws::ContactState;
   const Real T = law.gap.dilation.tangent, old[] = {p_old};
@@ -77,11 +77,11 @@ TEST(Uniqueness, IsToldOfAScene) {
     EXPECT_EQ(doubt(dim, 0.999 * limit), "");
     EXPECT_THAT(doubt(dim, 1.001 * limit), testing::AllOf(testing::HasSubstr("on reversal of slip on \"joint\""),
                                                           testing::HasSubstr("above 10.49 the")));
-    // a load on a block that is free to move gives the normal traction: dilation takes nothing from it
+    // The load on a movable block determines the normal traction, which dilation cannot change.
     const std::string top = dim == 2 ? "{0, free}" : "{0, 0, free}";
     EXPECT_EQ(doubt(dim, 2 * limit, {"Boundary conditions.moved.displacement=" + top}), "");
   }
-  // closure of compliance 1/5 at most raises the limit to tan(theta) = (1/3 + 1/5)/1.8
+  // Closure with a compliance of at most 1/5 increases the limit to tan(theta) = (1/3 + 1/5)/1.8.
   for (const std::string closure : {"0.1", "infinite"}) {
     const std::vector<std::string> closes = {"Materials.joint.maximum closure=" + closure};
     EXPECT_EQ(doubt(2, 0.999 * (1 / 3.0 + 0.2) / 1.8, closes), "");
@@ -89,7 +89,7 @@ TEST(Uniqueness, IsToldOfAScene) {
   }
 }
 
-/// The reason of the first step that fails, with so many iterations and no remedy.
+/// Returns the failure message of the first failed step, with a limit of iterations and without bisection and tethers.
 std::string reason(const std::string& scene, int iterations, std::vector<std::string> overrides) {
   for (const std::string other : {"Time.maximum halvings=0", "Time.tethers=false"}) overrides.push_back(other);
   overrides.push_back(fmt::format("Solver.maximum iterations={}", iterations));

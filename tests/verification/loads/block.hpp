@@ -1,11 +1,11 @@
-// Scenes built in code: the unit of the tests of loads, in 2D and 3D alike.
+// Scenes built in code for the tests of loads, in 2D and 3D.
 #pragma once
 
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
 
-/// Expressions of their texts, "free" included, ready for use.
+/// Returns compiled expressions, "free" included.
 inline std::vector<base::Expression> expressions(const std::vector<std::string>& texts) {
   std::vector<base::Expression> result;
   for (const auto& text : texts) {
@@ -17,14 +17,14 @@ inline std::vector<base::Expression> expressions(const std::vector<std::string>&
 
 inline base::Expression expression(const std::string& text) { return expressions({text}).front(); }
 
-/// The first `dim` of three.
+/// Returns the first `dim` values.
 template <class T>
 std::vector<T> first(int dim, std::vector<T> values) {
   values.resize(dim);
   return values;
 }
 
-/// A box of rock "rock" (elastic, E and Poisson's ratio 0), without fractures and conditions.
+/// Returns a box of rock "rock" (elastic, E given, Poisson's ratio 0), without fractures and conditions.
 inline model::Scene box_of_rock(const Discretisation& cells, const std::vector<Real>& size, const std::vector<int>& n,
                                 const std::string& youngs_modulus) {
   model::Scene scene;
@@ -57,7 +57,7 @@ inline void load(model::Scene& scene, const std::string& boundary, const std::ve
   if (!region.empty()) condition.region = region;
 }
 
-/// Solves one step and compares the displacement of every node with u(x, region of a cell around it).
+/// Solves one step and compares the displacement of every node with u(x, region of an adjacent cell).
 template <class Exact>
 void expect_displacement(model::Model& model, Real tolerance, const Exact& u) {
   const auto report = model.step_to(1);

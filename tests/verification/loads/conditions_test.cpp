@@ -1,10 +1,10 @@
-// Confining pressure, supports of points and edges, and in-situ stress by directions, against exact states.
+// Confining pressure, supports of points and edges, and in-situ stress by directions, compared with exact states.
 #include "verification/loads/block.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Holds components at the nodes of a boundary between two corners.
+/// Adds a support of components at the nodes of a boundary between two corners.
 void support(model::Scene& scene, const std::string& name, const std::string& boundary, const std::vector<Real>& lower,
              const std::vector<Real>& upper, const std::vector<std::string>& displacement) {
   auto& condition = scene.boundary_conditions[name];
@@ -26,8 +26,8 @@ std::vector<std::string> sides(int dim) {
   return all;
 }
 
-/// A block under one pressure on all of its sides, turned by 30 degrees, held at points just so that it cannot move:
-/// the stress is -p I in its plane and the supports bear nothing.
+/// Block under equal pressure on all sides, turned by 30 degrees, with a statically determinate support at points. The
+/// stress is -p I in its plane, and the reactions vanish.
 TEST(ConfiningPressure, OnATurnedBlockHeldAtPoints) {
   constexpr Real p = 3;
   for (const int dim : {2, 3})
@@ -56,7 +56,7 @@ TEST(ConfiningPressure, OnATurnedBlockHeldAtPoints) {
     }
 }
 
-/// A block in two parts, one on the other, that only springs hold: under a pressure p on its top it sinks by p/k.
+/// Block of two parts on an elastic foundation: under a pressure p on its top it settles by p/k.
 TEST(ElasticFoundation, HoldsABlockWithAJoint) {
   constexpr Real k = 50, p = 3, E = 1000;
   for (const int dim : {2, 3})
@@ -86,12 +86,12 @@ TEST(ElasticFoundation, HoldsABlockWithAJoint) {
     }
 }
 
-/// Springs that are softer under one half, in a region: the block turns until their forces and moments balance its load.
+/// Springs that are softer under one half (a region): the block rotates until forces and moments are balanced.
 TEST(ElasticFoundation, TurnsABlockOnUnequalSprings) {
   constexpr Real k = 40, p = 3;
   for (const auto& cells : discretisations(2)) {
     SCOPED_TRACE(cells.name());
-    auto scene = box_of_rock(cells, {2, 2}, {2, 2}, "1e8");  // rigid beside the springs
+    auto scene = box_of_rock(cells, {2, 2}, {2, 2}, "1e8");  // rigid compared with the springs
     scene.mesh.regions["right"] = {{1, 0}, {2, 2}};
     const std::pair<const char*, Real> halves[] = {{"bulk", k}, {"right", k / 3}};
     for (const auto& [region, stiffness] : halves) {
@@ -101,7 +101,7 @@ TEST(ElasticFoundation, TurnsABlockOnUnequalSprings) {
       springs.foundation_stiffness = {stiffness, stiffness};
     }
     confine(scene, "north", "3");
-    // v(x) = a + b x: int k v = -2 p and int k v x = -2 p over 0..2, k and k/3 on the halves
+    // v(x) = a + b x: the integrals of k v and k v x over 0..2 are -2 p, with k and k/3 on the halves
     const Real m0 = k + k / 3, m1 = k / 2 + k / 3 * 1.5, m2 = k / 3 + k / 3 * 7 / 3;
     const Real b = (-2 * p * m0 + 2 * p * m1) / (m0 * m2 - m1 * m1), a = (-2 * p - m1 * b) / m0;
     model::Model model(scene, Tpetra::getDefaultComm());
@@ -111,8 +111,7 @@ TEST(ElasticFoundation, TurnsABlockOnUnequalSprings) {
   }
 }
 
-/// A plate bent by its own sides: along one edge it is held as a hinge, and a pressure that grows along it is what a
-/// traction would be.
+/// Plate with a hinge along one edge: a non-uniform pressure equals the corresponding traction.
 TEST(ConfiningPressure, IsTheTractionAlongTheNormal) {
   const auto displacements = [](bool by_pressure) {
     auto scene = box_of_rock({"hexahedron", 1}, {2, 1, 1}, {4, 2, 2}, "10");
@@ -136,7 +135,7 @@ TEST(ConfiningPressure, IsTheTractionAlongTheNormal) {
   EXPECT_TRUE(anywhere(*Tpetra::getDefaultComm(), largest > 0.1));
 }
 
-/// Rock at rest between held sides: with the weight for the vertical gradient nothing moves inside, and on upright
+/// Rock at rest between fixed sides: with the weight as vertical gradient, inner displacements vanish. On vertical
 /// planes across and along the azimuth act SHmax and Shmin, without shear.
 TEST(InSituStress, ActsAcrossAndAlongItsAzimuth) {
   for (const Real azimuth : {0.0, 30.0, 135.0})
@@ -171,7 +170,7 @@ TEST(InSituStress, ActsAcrossAndAlongItsAzimuth) {
     }
 }
 
-/// In a section from west to east SHmax lies in it or across it.
+/// In a section from west to east, SHmax is in the section or normal to it.
 TEST(InSituStress, OfASection) {
   for (const Real azimuth : {0.0, 90.0, 270.0}) {
     auto scene = box_of_rock({"quadrilateral", 1}, {2, 2}, {2, 2}, "1000");

@@ -1,15 +1,16 @@
-// Fluid pressure in fractures as a given load: the traction on the rock is lambda - p n.
+// Given fluid pressure in fractures: the traction on the rock is lambda - p n.
 #include "verification/loads/block.hpp"
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// The block of regimes_2d.xml, its top held at (0.15, -0.1), while the pressure rises and falls. Balance N + p = k_n
-/// (opening - d_n), k_n = 3, with K_s = 2/3 and the closure V(N) = Du N/(Du K_n + N); roots of
-///   N/k_n + p/k_n + V(N) + mu tan(theta) N/K_s = g0 + tan(theta) d_t - d_n   (slip; stick without mu, with u^p for
-///   d_t)
-/// with 60 digits. Slip starts at p = 0.0883, opening at 0.4093.
+/// Block of regimes_2d.xml under increasing and decreasing pressure; displacement of its top (0.15, -0.1). Balance: N
+/// + p = k_n (opening - d_n), k_n = 3. With K_s = 2/3 and the closure V(N) = Du N/(Du K_n + N), N is the root (60
+/// digits) of
+///   N/k_n + p/k_n + V(N) + mu tan(theta) N/K_s = g0 + tan(theta) d_t - d_n
+/// for slip; for stick without the term with mu, and with u^p instead of d_t. Slip begins at p = 0.0883, opening at
+/// 0.4093.
 TEST(FluidPressure, SlipAndOpeningOfABlock) {
   struct Step {
     Real p, N, l_t, u_p, opening;
@@ -49,8 +50,8 @@ TEST(FluidPressure, SlipAndOpeningOfABlock) {
     }
 }
 
-/// A pressure in all fractures is a uniform stress -p I in all rock, so the tractions lambda are those of the dry scene
-/// with p n more on its boundary: where displacements are given, with the strain p/(dim lambda + 2G) more.
+/// A pressure in all fractures is a uniform stress -p I in all rock. The tractions lambda are then those of the dry
+/// scene with an additional boundary load p n. Prescribed displacements get the additional strain p/(dim lambda + 2G).
 TEST(FluidPressure, InAllFracturesIsALoadOnTheBoundary) {
   const std::string p = "(0.004*t)", coordinates[] = {"x", "y", "z"};
   const Real G = 0.4, lambda = 0.4;
@@ -86,8 +87,8 @@ TEST(FluidPressure, InAllFracturesIsALoadOnTheBoundary) {
     }
 }
 
-/// The integrals of w and of w x over a crack from -1 to 1 in the middle of a box, under the pressure p (1 + x/2), with
-/// n cells on the crack.
+/// Returns the integrals of w and of w x over a crack from -1 to 1 in the middle of a box, under the pressure p (1 +
+/// x/2), with n cells on the crack.
 std::array<Real, 2> moments(const std::string& cell, const std::string& tips, int size, int n, Real p) {
   const Real middle = size / 2.0;
   auto scene = box_of_rock({cell, 2}, std::vector<Real>(2, size), {size * n / 2, size * n / 2}, "1e10");
@@ -102,7 +103,7 @@ std::array<Real, 2> moments(const std::string& cell, const std::string& tips, in
   model::Model model(scene, Tpetra::getDefaultComm());
   const auto report = model.step_to(1);
   EXPECT_TRUE(report.converged) << report.reason;
-  const Real on_last_face = p * (1.5 - 0.5 / n);  // the largest
+  const Real on_last_face = p * (1.5 - 0.5 / n);  // largest value
   EXPECT_NEAR(model.system().scales().at("stress"), on_last_face, 1e-12 * p);
   const Outputs out(model);
   std::array<Real, 2> here{}, all;
@@ -116,10 +117,10 @@ std::array<Real, 2> moments(const std::string& cell, const std::string& tips, in
   return all;
 }
 
-/// In infinite rock, nu = 0, the crack opens by w = 4 p/E (1 + x/4) sqrt(1 - x^2) (Sneddon 1946). Plain tips make
-/// errors of first order, a box holds it back with the inverse square of its size: extrapolation takes out both. What
-/// is left is of second order in the cells, (1/8)^2; with enriched tips 1/40 is met without the first extrapolation,
-/// which plain ones miss by far.
+/// In infinite rock with nu = 0, the crack opening is w = 4 p/E (1 + x/4) sqrt(1 - x^2) (Sneddon 1946). Plain tips
+/// have errors of first order; the finite box reduces w by the inverse square of its size. Two extrapolations remove
+/// these errors; the remaining error is of second order in the cells, (1/8)^2. Enriched tips reach 1/40 without the
+/// first extrapolation, plain tips do not.
 TEST(FluidPressure, OpensACrack) {
   const Real E = 1e10, p = 1e6, exact[] = {2 * M_PI * p / E, M_PI / 8 * p / E};
   for (const auto& cell : cells_of(2)) {
@@ -137,7 +138,7 @@ TEST(FluidPressure, OpensACrack) {
   }
 }
 
-/// Rock at rest under a uniform stress, the joint under what the pressure leaves of it. Without traction on its sides
+/// Rock at rest under a uniform stress, the joint under this stress minus the pressure. Without traction on its sides
 /// the joint opens until the rock, k_n = 3, carries the pressure.
 TEST(FluidPressure, IsPartOfTheInitialState) {
   for (const int dim : {2, 3})

@@ -1,4 +1,4 @@
-// Meshes of gmsh, from the file to the answer.
+// Gmsh meshes, from the file to the solution.
 #include "verification/loads/block.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -8,7 +8,7 @@
 namespace sprekk::tests {
 namespace {
 
-/// A uniform stress whose fractures all stick and are rigid passes through any mesh: no jump, traction sigma n.
+/// Checks a uniform stress with rigid, sticking fractures: no jump, traction sigma n.
 void expect_uniform_stress(const std::string& file, int n_fractures) {
   SCOPED_TRACE(file);
   const Real xx = -0.8, xy = 0.15, yy = -0.5;  // stress; G = lambda = 1
@@ -71,7 +71,7 @@ model::Scene gmsh_scene(const std::string& file, int n_fractures) {
   return scene;
 }
 
-/// A named fracture of a file starts with the mean over each face of the plastic jump that is given for it.
+/// The initial plastic jump of a fracture in a file is its mean over each face.
 TEST(Gmsh, FractureStartsWithAPlasticJump) {
   auto scene = gmsh_scene("planes", 2);
   scene.materials["rock"].G = scene.materials["rock"].lambda = base::Expression(1);
@@ -89,7 +89,8 @@ TEST(Gmsh, FractureStartsWithAPlasticJump) {
   }
 }
 
-/// Poisson's ratio 0, pressed from above: fractures along the load see nothing of it, those across pass it on.
+/// Poisson's ratio 0, vertical compression: fractures along the load are without traction, fractures across transmit
+/// it.
 TEST(Gmsh, TetrahedraUnderPressure) {
   const Real E = 2e6, pressure = 1e3;
   const std::pair<const char*, int> files[] = {{"patch", 1},         {"patch_order2", 1}, {"planes", 2},
@@ -115,13 +116,13 @@ TEST(Gmsh, TetrahedraUnderPressure) {
   }
 }
 
-/// What a face has, by its fracture and its centre.
+/// Data of a face, by fracture and centre.
 using Faces = std::map<std::array<long, 4>, std::array<Real, 7>>;
 
-/// Collective; the same on every rank.
+/// Returns the data of all faces, equal on every rank. Collective.
 Faces faces_by_place(model::Model& model) {
   const Outputs out(model);
-  const auto gathered = gathered_faces(model, identity(), {1, 1, 1});  // normals lie along axes
+  const auto gathered = gathered_faces(model, identity(), {1, 1, 1});  // normals are along axes
   std::vector<Real> here(2 * gathered.centre.size(), 0), all(here.size());
   for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
     const auto& face = model.mesh().fracture_faces[f];
@@ -138,8 +139,8 @@ Faces faces_by_place(model::Model& model) {
   return faces;
 }
 
-/// A mesh of gmsh on all ranks, and the box with the same cells on each rank alone: the same answer, with sliding and
-/// open faces.
+/// Compares a Gmsh mesh on all ranks with the box with the same cells on each rank alone, with slipping and open
+/// faces.
 void expect_as_box(const std::string& file, int n, Real height, const std::array<Real, 2>& range) {
   SCOPED_TRACE(file);
   const int order = file.find("order2") == file.npos ? 1 : 2;

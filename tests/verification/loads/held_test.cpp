@@ -1,4 +1,4 @@
-// Conditions that contradict each other, and scenes that nothing holds: refused with a message, on every rank alike.
+// Contradictory conditions and unsupported scenes: refused with equal messages on all ranks.
 #include "verification/loads/block.hpp"
 
 #include <gmock/gmock.h>
@@ -9,7 +9,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// The message of the Error that making the model, or setting its time, ends with on this rank; "" if none.
+/// Returns the message of the Error of the constructor of the model or of set_time() on this rank; "" if none.
 std::string error_of(const model::Scene& scene) {
   try {
     model::Model model(scene, Tpetra::getDefaultComm());
@@ -43,7 +43,7 @@ TEST(Held, TractionAndRollersAlone) {
                         HasSubstr("prescribe the displacements")))
           << cells.name();
       prescribe(scene, "west", first<std::string>(dim, {"0", "free", "0"}));
-      EXPECT_EQ(error_of(scene), "") << cells.name();  // the upper half is held by contact
+      EXPECT_EQ(error_of(scene), "") << cells.name();  // contact constrains the upper half
     }
 }
 
@@ -66,7 +66,7 @@ TEST(Conflicts, OfTwoRegionsAndOnTiedSidesAreNamed) {
       auto other = rest;
       other[0] = "1e-3";
       prescribe(scene, "south", rest, "left");
-      prescribe(scene, "south", other, "bulk");  // both hold the nodes between the regions
+      prescribe(scene, "south", other, "bulk");  // both constrain the nodes between the regions
       EXPECT_THAT(error_of(scene), AllOf(HasSubstr("\"south left held\""), HasSubstr("\"south bulk held\""),
                                          HasSubstr("component x"), HasSubstr("at (1, 0, ")));
       scene.boundary_conditions.erase("south bulk held");

@@ -1,11 +1,11 @@
-// Initial stress and the forces that balance it: rock at rest.
+// Initial stress with the forces in equilibrium: rock at rest.
 #include "verification/loads/block.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Under its own weight and the lithostatic stress rock does not move, and the fracture carries the initial traction at
-/// its centre: sigma_xx = ratio density g (z - surface).
+/// Checks that rock under its weight and the lithostatic stress does not move. The fracture has the initial traction
+/// at its centre: sigma_xx = ratio density g (z - surface).
 void expect_rest(const std::string& name, const std::string& cell, int order) {
   SCOPED_TRACE(fmt::format("{} {} order {}", name, cell, order));
   auto scene = read_scene(name, {"Mesh.cell=" + cell, fmt::format("Mesh.order={}", order)});
@@ -15,7 +15,9 @@ void expect_rest(const std::string& name, const std::string& cell, int order) {
   const Outputs out(model);
   const Real weight = 2700 * 9.81;
   const int up = model.mesh().dim() - 1;
-  for (Real u : out["displacement"].values) EXPECT_NEAR(u, 0, 1e-13);  // strains would be about 1e-1
+  for (Real u : out["displacement"].values)
+    EXPECT_NEAR(u, 0, 1e-13);  // without initial stress, strains would be
+                               // about 1e-1
   for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
     const auto traction = out.vector("traction local", f);
     EXPECT_NEAR(traction[0], 0.5 * weight * (model.mesh().fracture_faces[f].centre[up] - 3), 1e-9 * weight);
@@ -31,7 +33,7 @@ TEST(InitialStress, BalancesGravity) {
   }
 }
 
-/// The mean over a fracture face of a polynomial of degree 2, by a rule that is exact for it.
+/// Returns the mean over a fracture face of a polynomial of degree 2, by an exact rule.
 template <class F>
 Vector3 mean_on(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const F& f) {
   const int n = mesh::n_face_corners(mesh.shape);
@@ -64,11 +66,11 @@ Vector3 mean_on(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, co
   return sum;
 }
 
-/// A stress that is quadratic in space, XX, YY, ZZ, XY[, YZ, XZ], and the body force that balances it.
+/// Quadratic stress XX, YY, ZZ, XY[, YZ, XZ], with the body force in equilibrium.
 struct QuadraticStress {
   std::vector<std::string> components, body_force;
 
-  /// Texts of sigma n.
+  /// Returns the components of sigma n as texts.
   std::vector<std::string> traction(const Vector3& n) const {
     const int dim = static_cast<int>(body_force.size());
     constexpr int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
@@ -81,9 +83,9 @@ struct QuadraticStress {
   }
 };
 
-/// Rock at rest under a stress that is not uniform on faces, with a fracture that reaches the free surface and is
-/// inclined in the stress. On a free surface the deviation of the traction from its mean on a face has no counterpart
-/// on a neighbouring face; inside of the rock, deviations of neighbours cancel where the stress is linear.
+/// Checks rest under a stress that varies on faces, with an inclined fracture that reaches the free surface. On the
+/// free surface, the deviation of the traction from its mean on a face is not balanced by a neighbouring face. Inside
+/// the rock, deviations of neighbours cancel for linear stress.
 void expect_rest_at_surface(const Discretisation& cells, const QuadraticStress& stress) {
   SCOPED_TRACE(cells.name());
   const int dim = static_cast<int>(stress.body_force.size());
@@ -99,7 +101,7 @@ void expect_rest_at_surface(const Discretisation& cells, const QuadraticStress& 
   scene.bulk.initial_stress = expressions(stress.components);
   scene.bulk.body_force = expressions(stress.body_force);
   const Vector3 axis = dim == 2 ? Vector3{0, 0, 1} : Vector3{1, 1, 0.5};
-  scene.mesh.tips = "plain";  // rules of enriched cells are not exact for quadratic stress
+  scene.mesh.tips = "plain";  // quadrature in enriched cells is not exact for quadratic stress
   scene.mesh.rotation = 25;
   scene.mesh.rotation_axis = {axis[0], axis[1], axis[2]};
   const Matrix3 Q = rotation(25, axis);
@@ -121,7 +123,7 @@ void expect_rest_at_surface(const Discretisation& cells, const QuadraticStress& 
       return traction;
     });
     const auto traction = out.vector("traction", f);
-    EXPECT_GT(std::abs(dot(mean, face.frame[1])), 0.1);  // inclined
+    EXPECT_GT(std::abs(dot(mean, face.frame[1])), 0.1);  // inclined to the principal stresses
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(traction[i], mean[i], 1e-10 * norm(mean));
     EXPECT_EQ(out.scalar("state", f), 1);
   }
@@ -137,12 +139,12 @@ TEST(InitialStress, FractureThatReachesTheSurface) {
   for (const auto& cells : discretisations(3)) expect_rest_at_surface(cells, solid);
 }
 
-/// How the initial stress of an upper block is told apart from none in the lower one.
+/// Definition of the initial stress of the upper block: by "y > height", "y >= height" or a region.
 enum class Step { above, from, region };
 
-/// A unit block that a fracture parts in the middle, turned as a whole; the upper half has the initial stress -p I. The
-/// boundary is at rest. With lambda + 2 G = 3000, rock moves along the normal by -p/6000 times its distance from the
-/// boundary: the traction is -p/2 on both sides of every face, whatever side rounding puts its points on.
+/// Checks a rotated unit block with a fracture in the middle and the initial stress -p I in its upper half; the
+/// boundary is fixed. With lambda + 2 G = 3000, rock moves along the normal by -p/6000 times its distance from the
+/// boundary. The traction is -p/2 on both sides of every face, independent of rounding of its points to either side.
 void expect_half_the_stress(const Discretisation& cells, int dim, Real degrees, Step step, bool swap) {
   SCOPED_TRACE(fmt::format("{} in {}D, {} degrees, step {}, {}", cells.name(), dim, degrees, static_cast<int>(step),
                            swap ? "swapped" : "as it is"));
@@ -209,7 +211,7 @@ TEST(InitialStress, OfARegion) {
       expect_half_the_stress(discretisations(dim).front(), dim, 30, Step::region, swap);
 }
 
-/// A region's own stress takes the place of the lithostatic one: here it is the same, and the rock is at rest.
+/// The stress of a region replaces the lithostatic stress; here both are equal, so the rock is at rest.
 TEST(InitialStress, OfARegionReplacesTheLithostatic) {
   auto scene = read_scene("verification/lithostatic_2d.xml");
   scene.mesh.regions["west"] = {{0, 0}, {1, 3}};
@@ -219,7 +221,7 @@ TEST(InitialStress, OfARegionReplacesTheLithostatic) {
   expect_displacement(model, 1e-13, [](const auto&...) { return Vector3{}; });
 }
 
-/// A joint that closes does so from the same state whichever side of it is called minus.
+/// The initial state of a joint that closes does not depend on the choice of its side minus.
 TEST(InitialStress, StepDoesNotAskForTheOrderOfSides) {
   std::vector<Real> jumps;
   for (const bool swap : {false, true}) {
@@ -237,7 +239,7 @@ TEST(InitialStress, StepDoesNotAskForTheOrderOfSides) {
   EXPECT_NEAR(jumps[0], jumps[1], 1e-9 * std::abs(jumps[0]));
 }
 
-/// A fault that has slipped before is at rest under the initial stress, wider by its dilation.
+/// A fault with initial slip is at rest under the initial stress, with its dilation as additional opening.
 TEST(InitialStress, AfterAPlasticJump) {
   auto scene = read_scene("verification/lithostatic_2d.xml", {"Materials.joint.dilation angle=5"});
   scene.fractures.at("fracture").plastic_jump = expressions({"-0.2"});
@@ -251,7 +253,7 @@ TEST(InitialStress, AfterAPlasticJump) {
   }
 }
 
-/// Without the initial stress the same weight does move the rock, so that the test above is one.
+/// Without the initial stress the same weight moves the rock; hence the test above is significant.
 TEST(InitialStress, IsNeededForRest) {
   auto scene = read_scene("verification/lithostatic_2d.xml");
   scene.bulk.lithostatic_stress.reset();

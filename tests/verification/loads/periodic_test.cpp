@@ -4,8 +4,8 @@
 namespace sprekk::tests {
 namespace {
 
-/// The block in series with a joint, slip regime: N/k_n + V(N) + mu tan(theta) N/K_s = g0 + tan(theta)|d_t| - d_n with
-/// k_n = 3, 1/K_s = 1 + 1/2 is a quadratic in N.
+/// Block in series with a slipping joint: N/k_n + V(N) + mu tan(theta) N/K_s = g0 + tan(theta)|d_t| - d_n with k_n =
+/// 3, 1/K_s = 1 + 1/2 is a quadratic equation in N.
 TEST(Periodic, BlockSlipsUniformly) {
   const Real N = 0.322985706114, l_t = 0.193791423668, u_p = 0.209312864497, opening = 0.007661902038;
   for (int order : {1, 2})

@@ -1,4 +1,4 @@
-// Factors of safety of blocks on one and two planes against limit equilibrium.
+// Factors of safety of blocks on one and two planes, compared with limit equilibrium.
 #include "model/factor_of_safety.hpp"
 #include "verification/loads/block.hpp"
 
@@ -28,12 +28,12 @@ void expect_between(const model::FactorOfSafety& found, Real exact) {
   }
 }
 
-/// Exact factors of a block that slides do not depend on the mesh.
+/// The exact factor of a sliding block does not depend on the mesh.
 const std::string coarse = "Mesh.cells={5, 2}";
 
 Real tan_of(Real degrees) { return std::tan(degrees * M_PI / 180); }
 
-/// The mesh of the scene on one rank, a coarse one on several.
+/// Returns overrides for a coarse mesh on several ranks; none on one rank (mesh of the scene).
 std::vector<std::string> mesh_of_ranks(const std::string& coarse) {
   return Tpetra::getDefaultComm()->getSize() == 1 ? std::vector<std::string>{} : std::vector{coarse};
 }
@@ -44,7 +44,7 @@ TEST(FactorOfSafety, OfABlockOnAPlane) {
                  tan_of(32) / tan_of(30));
 }
 
-/// c A and W cos(30) tan(phi) over W sin(30).
+/// Exact factor: (c A + W cos(30) tan(phi)) / (W sin(30)).
 TEST(FactorOfSafety, OfABlockWithCohesion) {
   const Real cohesion = 10e3, weight = 2700 * 9.81 * 10 * 2;
   expect_between(
@@ -52,8 +52,9 @@ TEST(FactorOfSafety, OfABlockWithCohesion) {
       (cohesion * 10 + weight * std::cos(M_PI / 6) * tan_of(40)) / (weight / 2));
 }
 
-/// Of the wedge behind a slope of 45 degrees: its crest opens, and cohesion there is lost: in proportion to 1 mm little
-/// of it, so that the factor is less than that of limit equilibrium by some 1e-4. On several ranks the coarsest mesh.
+/// Wedge behind a slope of 45 degrees. Its crest opens and loses some cohesion there. In proportion to an opening of 1
+/// mm this loss is small: the factor is about 1e-4 below limit equilibrium. On several ranks only the coarsest mesh is
+/// used.
 TEST(FactorOfSafety, OfASlopeWhoseCrestOpens) {
   const auto scene = model::read_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/slopes/slope_2d.xml", {});
   const Real weight = scene.material_of("bulk").density_at({}) * 9.81 * 32, length = std::hypot(8, 8);
@@ -70,7 +71,7 @@ TEST(FactorOfSafety, OfASlopeWhoseCrestOpens) {
   }
 }
 
-/// With twice its strength a block stands that does not with its own.
+/// A block that is unstable with its own strength is stable with twice its strength.
 TEST(FactorOfSafety, BelowOne) {
   const std::string path = source_dir() + "/xml/slopes/plane_2d.xml";
   expect_between(model::factor_of_safety({.scene = path,
@@ -81,7 +82,7 @@ TEST(FactorOfSafety, BelowOne) {
                  tan_of(20) / tan_of(30));
 }
 
-/// Of the joint that a stage leaves.
+/// Factor for the joint after a stage.
 TEST(FactorOfSafety, AfterStages) {
   expect_between(safety("plane_2d.xml", {coarse, "Stages.s.time=0.5", "Stages.s.Materials.joint.friction angle=50",
                                          "Time.end=1", "Time.steps=1"}),

@@ -1,11 +1,11 @@
-// Displacements that jump where a fault ends on the sides that they move, against blocks that move as wholes.
+// Prescribed displacements that jump at a fault on the boundary, compared with rigid blocks.
 #include "verification/loads/block.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Two blocks with a fault between them at half the height, and in the upper one a fracture from the west side that
-/// ends in the rock. The sides of both move along the fault by 1 and -1 mm, by a step of this form at the fault.
+/// Returns two blocks with a fault at half height; the upper block has a fracture from the west side that ends in the
+/// rock. The boundaries of the blocks move along the fault by 1 and -1 mm, prescribed by the expression `step`.
 model::Scene moved_blocks(const Discretisation& cells, Real degrees, const std::string& step) {
   const int dim = cells.cell == "triangle" || cells.cell == "quadrilateral" ? 2 : 3, up = dim - 1;
   auto scene = box_of_rock(cells, std::vector<Real>(dim, 2), std::vector<int>(dim, 4), "3e10");
@@ -38,7 +38,8 @@ TEST(SidesOfAFault, MoveApartAlongIt) {
     for (const auto& cells : discretisations(dim))
       for (const auto& [degrees, step] : {std::pair{0.0, "{0} > 1 ? 1e-3 : -1e-3"},
                                           {0.0, "{0} < 1 ? -1e-3 : 1e-3"},
-                                          {0.0, "{0} > 1+1e-7 ? 1e-3 : -1e-3"},  // nodes as exact as in a file
+                                          {0.0, "{0} > 1+1e-7 ? 1e-3 : -1e-3"},  // tolerance as for nodes read from a
+                                                                                 // file
                                           {0.0, "{0} > 1-1e-7 ? 1e-3 : -1e-3"},
                                           {30.0, "{0} > 1 ? 1e-3 : -1e-3"}}) {
         SCOPED_TRACE(fmt::format("{} {} {}", cells.name(), degrees, step));

@@ -1,11 +1,11 @@
-// Materials, loads and conditions that change from place to place, against exact states.
+// Materials, loads and conditions that depend on position, compared with exact states.
 #include "verification/loads/block.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// A column on its floor under its weight, Poisson's ratio 0: u = -integral from 0 to z of W(s)/E(s) ds, with W the
-/// weight above. `top_of_layer` has E and density of each layer; displacements are quadratic in a layer.
+/// Layer of a column under its weight, on a floor, Poisson's ratio 0: u = -integral from 0 to z of W(s)/E(s) ds, with
+/// the weight W above s. Each layer has constant modulus and density, so displacements are quadratic in a layer.
 struct Layer {
   Real top, modulus, density;
 };
@@ -61,7 +61,7 @@ TEST(Column, LayersUnderGravity) {
       expect_column({cell, 2}, dim, 3, "1e6*(h < 1 ? 2 : h < 2 ? 1 : 4)", "h < 1 ? 3000 : h < 2 ? 2000 : 1000", layers);
 }
 
-/// Cells of order 1 that lie in layers give the exact values at nodes; material is that at the centres of cells.
+/// Cells of order 1 in horizontal layers give exact nodal values; the material is evaluated at the centres of cells.
 TEST(Column, GradedUnderGravity) {
   const auto modulus = [](Real h) { return 1e6 * (1 + h * h); };
   const auto density = [](Real h) { return 2000 - 300 * h; };
@@ -73,8 +73,7 @@ TEST(Column, GradedUnderGravity) {
                     layers);
 }
 
-/// Two rocks on either side of a fracture y = 1/2, each pulled along x by its own traction, pressed together without
-/// friction.
+/// Two rocks on both sides of a fracture y = 1/2 without friction, under compression. Each has its own traction in x.
 TEST(Regions, EachHasItsOwnTraction) {
   const Real E[] = {2e6, 1e6}, pull[] = {3e3, -1e3}, push = 1e-3, pressure = push / (0.5 / E[0] + 0.5 / E[1]);
   for (int dim : {2, 3})
@@ -116,8 +115,9 @@ TEST(Regions, EachHasItsOwnTraction) {
     }
 }
 
-/// A joint whose stiffness K_t = tau/(a + b x) changes along it carries a uniform shear traction tau: its elastic jump
-/// is a + b x, which stretches the rock above by b. That rock is held by the joint alone; all else on it is traction.
+/// A joint with stiffness K_t = tau/(a + b x) under uniform shear traction tau has the elastic jump a + b x, which
+/// stretches the upper rock by b. The upper rock is supported by the joint only; its other sides have prescribed
+/// tractions.
 TEST(Joint, StiffnessVariesUnderUniformTraction) {
   const Real tau = 200, pressure = 1000, E = 1e6, a = 2e-4, b = 3e-4;
   const auto number = [](Real x) { return fmt::format("({:.17g})", x); };

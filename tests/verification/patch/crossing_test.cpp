@@ -1,14 +1,14 @@
-// Fractures that cross inside or on the boundary, under uniform stress, on meshes of gmsh.
+// Fractures that cross inside or on the boundary, under uniform stress, on Gmsh meshes.
 #include "verification/patch/patch.hpp"
 
 namespace sprekk::tests {
 namespace {
 
 struct Line {
-  Real degrees, K_t, zeta;  ///< slides by zeta lambda_t
+  Real degrees, K_t, zeta;  ///< its slip is zeta lambda_t
 };
 
-/// The meshes cut_lines6 to 8 by the lines that cut them, and the blocks that there are.
+/// Lines through the meshes cut_lines6 to 8, and the blocks between them.
 struct Lines {
   int mesh;
   std::vector<Line> lines;
@@ -21,7 +21,7 @@ const Lines on_boundary = {8, {{75, 3, 0.8}, {130, 1, 0.3}}, {"--", "+-", "++"}}
 
 Patch crossing_patch(int dim, const Lines& lines, Real lambda = lame_lambda) {
   auto patch = uniform_patch(2, {{{-0.8, 0.15, 0}, {0.15, -0.5, 0}, {0, 0, 0}}}, lambda);
-  patch.dim = dim;  // in 3D in plane strain
+  patch.dim = dim;  // plane strain in 3D
   for (std::size_t k = 0; k < lines.lines.size(); ++k) {
     const auto& line = lines.lines[k];
     const Real angle = line.degrees * M_PI / 180;
@@ -35,7 +35,7 @@ Patch crossing_patch(int dim, const Lines& lines, Real lambda = lame_lambda) {
   return patch;
 }
 
-/// The scene of three lines or of two, with the mesh, the joints and the blocks of others.
+/// Returns the scene of three or two lines, with the given mesh, joints and blocks.
 model::Scene crossing_scene(int dim, const std::string& cell, int order, const Lines& lines, const Patch& patch) {
   std::vector<std::string> overrides = {
       fmt::format("Mesh file.path=../../tests/data/meshes/cut_lines{}_{}.msh", lines.mesh, cell),
@@ -60,7 +60,7 @@ model::Scene crossing_scene(int dim, const std::string& cell, int order, const L
   return scene;
 }
 
-/// Calculated independently.
+/// Independent values of the formulas.
 TEST(CrossingPatch, Formulas) {
   struct Example {
     Lines lines;
@@ -100,20 +100,21 @@ TEST(CrossingPatch, EveryCell) {
     for (const auto& cell : cells_of(dim))
       for (const auto& lines : dim == 2 ? std::vector<Lines>{two, three, on_boundary} : std::vector<Lines>{two, three})
         for (const int order : {1, 2}) {
-          if (dim == 3 && order == 2 && lines.mesh == three.mesh) continue;  // adds much time and little else
+          if (dim == 3 && order == 2 && lines.mesh == three.mesh) continue;  // saves much time
           SCOPED_TRACE(fmt::format("{}, mesh {}, order {}", cell, lines.mesh, order));
           const auto patch = crossing_patch(dim, lines);
           expect_solves(crossing_scene(dim, cell, order, lines, patch), patch, tolerance);
         }
 }
 
-/// Poisson's ratio 0.49995, with a pressure of the rock. Rounding of displacements counts lambda/G times in stresses.
+/// Poisson's ratio 0.49995, with a pressure unknown of the rock. Round-off of displacements is amplified by lambda/G
+/// in stresses.
 TEST(CrossingPatch, OfNearlyIncompressibleRock) {
   constexpr Real lambda = 1e4;
   for (const int dim : {2, 3})
     for (const auto& cell : cells_of(dim))
       for (const int order : {1, 2}) {
-        if (dim == 3 && order == 2) continue;  // adds much time and little else
+        if (dim == 3 && order == 2) continue;  // saves much time
         SCOPED_TRACE(fmt::format("{}, order {}", cell, order));
         const auto patch = crossing_patch(dim, two, lambda);
         auto scene = crossing_scene(dim, cell, order, two, patch);

@@ -1,9 +1,8 @@
 // One plane fracture of any orientation through a box under uniform stress.
-//
-// In the frame of the plane sigma_nn = -0.3; the block of the tangential directions is -0.5 in 2D and
-// [[-0.5, 0.07], [0.07, -0.2]] in 3D; the shear is T, in 3D along (0.6, 0.8): T = 0.1 where the joint sticks, and
-// T = mu 0.3 with the plastic jump 0.25 along it where it slips. Elementary: the jump is the joint's law at this
-// traction, see at_stress().
+// In the frame of the plane, sigma_nn = -0.3. The tangential block of the stress is -0.5 in 2D and [[-0.5, 0.07],
+// [0.07, -0.2]] in 3D. The shear is T, in 3D along (0.6, 0.8). A sticking joint has T = 0.1. A slipping joint has T =
+// mu 0.3, with the plastic jump 0.25 along the shear. The jump follows from the joint law at this traction, see
+// at_stress().
 #pragma once
 
 #include "verification/patch/patch.hpp"
@@ -22,7 +21,7 @@ inline Vector3 unit(Vector3 v) {
   return v;
 }
 
-/// The exact state for a plane through `origin` whose normal points along n.
+/// Returns the exact state for a plane through `origin` with the normal n (of any length).
 inline Patch inclined_patch(int dim, Vector3 n, bool slips, const Vector3& origin = {}) {
   n = unit(n);
   const Vector3 a = std::abs(n[2]) < 0.9 ? Vector3{0, 0, 1} : Vector3{1, 0, 0};
@@ -44,7 +43,7 @@ inline Patch inclined_patch(int dim, Vector3 n, bool slips, const Vector3& origi
   return patch;
 }
 
-/// The normals of the meshes cut_lines1 to 5 and cut_plane1 to 3.
+/// Returns the normals of the meshes cut_lines1 to 5 and cut_plane1 to 3.
 inline std::vector<Vector3> inclined_normals(int dim) {
   if (dim == 3) return {{1, 2, 3}, {0, 0, 1}, {-0.2, 0.9, 0.1}};
   return {{0, 1, 0}, {-0.5, std::sqrt(0.75), 0}, {-1, 1, 0}, {1, 0, 0}, {0.31, -0.95, 0}};

@@ -1,10 +1,10 @@
-// An inclined fracture through a box under uniform stress, on meshes of gmsh that follow it.
+// Inclined fracture through a box under uniform stress, on Gmsh meshes with faces on the fracture.
 #include "verification/patch/inclined.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Examples of the formulas, calculated independently.
+/// Independent values of the formulas.
 TEST(InclinedPatch, Formulas) {
   struct Example {
     bool slips;
@@ -48,7 +48,7 @@ TEST(InclinedPatch, Formulas) {
       }
 }
 
-/// The scenes as they are, and with cells of order 2.
+/// The scenes themselves, and with cells of order 2.
 TEST(InclinedPatch, Scenes) {
   for (const int order : {1, 2}) {
     const auto set_order = fmt::format("Mesh file.order={}", order);

@@ -1,4 +1,4 @@
-// Exact states of blocks under one uniform stress, whatever the mesh: how a scene gets one, and how it is compared.
+// Exact states of blocks under one uniform stress, for any mesh: how to prescribe them in a scene and compare them.
 #pragma once
 
 #include "verification/scenes.hpp"
@@ -12,12 +12,12 @@ constexpr Real G = 1, lame_lambda = 1;  // of the rock in all patch tests
 
 inline Vector3 scaled(Real factor, const Vector3& v) { return {factor * v[0], factor * v[1], factor * v[2]}; }
 
-/// Round-off (1e-16) times the condition of the matrix: moduli, sides, displacements and stresses are of the order of
-/// 1. A slipping joint is exactly at its friction bound, but it slides by a given amount far from 0, and rounding mu
-/// moves its traction no more than by rounding mu N.
+/// Round-off (1e-16) times the condition number of the matrix; moduli, sides, displacements and stresses have
+/// magnitude 1. A slipping joint is exactly at its friction bound, with a finite slip. Thus rounding of mu changes its
+/// traction only by the rounding of mu N.
 inline constexpr Real tolerance = 1e-11;
 
-/// The law of a joint, and its exact state for sides that are ordered along n.
+/// Law of a joint, and its exact state for sides ordered along n.
 struct PatchJoint {
   Real K_t, dilation_tangent, g0, Du, K_n;
   Vector3 n{}, traction{}, elastic{}, plastic{};
@@ -28,7 +28,7 @@ struct PatchJoint {
   Vector3 jump() const { return {elastic[0] + plastic[0], elastic[1] + plastic[1], elastic[2] + plastic[2]}; }
 };
 
-/// The state under a stress with a plastic tangential jump u_p:
+/// Returns the state under a stress with a plastic tangential jump u_p:
 /// [[u]] = u_p + lambda_t/K_t + (g0 + tan(theta)|u_p| - Du N/(Du K_n + N)) n.
 inline PatchJoint at_stress(PatchJoint joint, const Vector3& n, const Matrix3& stress, const Vector3& u_p) {
   joint.n = n;
@@ -43,7 +43,8 @@ inline PatchJoint at_stress(PatchJoint joint, const Vector3& n, const Matrix3& s
   return joint;
 }
 
-/// Displacement strain.(x - origin) + offset of the block, blocks by the regions' names, joints by the fractures'.
+/// Exact state with the displacement strain (x - origin) + offset of the block; blocks by names of regions, joints by
+/// names of fractures.
 struct Patch {
   int dim;
   Matrix3 stress{}, strain{};
@@ -58,7 +59,7 @@ struct Patch {
   }
 };
 
-/// By Hooke's law; in 2D plane strain, which sets stress_zz.
+/// Returns the state by Hooke's law; in 2D plane strain, which determines stress_zz.
 inline Patch uniform_patch(int dim, Matrix3 stress, Real lambda = lame_lambda) {
   if (dim == 2) stress[2][2] = lambda / (2 * (lambda + G)) * (stress[0][0] + stress[1][1]);
   Patch patch{dim, stress};
@@ -69,8 +70,8 @@ inline Patch uniform_patch(int dim, Matrix3 stress, Real lambda = lame_lambda) {
   return patch;
 }
 
-/// The blocks that joints cut out: each by its sides of the joints in the order of their names, a '+' or '-' for each,
-/// and moved by the jumps of those on whose side + it lies.
+/// Adds the blocks between the joints. The name of a block has a '+' or '-' for each joint (ordered by name), for its
+/// side of the joint. Its offset is the sum of the jumps of joints with '+'.
 inline void add_blocks(Patch& patch) {
   patch.offset = {{"", {}}};
   for (const auto& [name, joint] : patch.joints) {
@@ -84,7 +85,7 @@ inline void add_blocks(Patch& patch) {
   }
 }
 
-/// The exact displacement in a block as expressions of x, y, z.
+/// Returns the exact displacement in a block as expressions of x, y, z.
 inline std::vector<base::Expression> displacement_expressions(const Patch& patch, const std::string& block) {
   std::vector<base::Expression> u;
   for (int i = 0; i < patch.dim; ++i) {
@@ -97,14 +98,14 @@ inline std::vector<base::Expression> displacement_expressions(const Patch& patch
   return u;
 }
 
-/// Gives every condition of a scene, each of which must have a region, the exact displacement of its block.
+/// Prescribes the exact displacement of its block in every condition of a scene; each condition must have a region.
 inline void prescribe(model::Scene& scene, const Patch& patch) {
   for (auto& [name, condition] : scene.boundary_conditions)
     condition.displacement = displacement_expressions(patch, condition.region.value());
 }
 
-/// Compares displacement at all nodes, stress in all cells, and every joint's vectors in the global frame and its
-/// invariants; a joint with a tangential plastic jump has slipped, others stick.
+/// Compares displacements at all nodes, stresses in all cells, and for every joint the global vectors and invariants.
+/// A joint with a tangential plastic jump must slip, others stick.
 inline void expect_patch(model::Model& model, const Patch& patch, Real tolerance) {
   const Outputs out(model);
   const auto& mesh = model.mesh();
@@ -152,8 +153,8 @@ inline void expect_patch(model::Model& model, const Patch& patch, Real tolerance
   }
 }
 
-/// Runs the one step of a scene and compares. Newton's method goes on until its measures are round-off, such that they
-/// are no part of the error.
+/// Runs the single step of a scene and compares. Newton's tolerance is at round-off, so that iteration errors do not
+/// count.
 inline void expect_solves(model::Scene scene, const Patch& patch, Real tolerance) {
   scene.solver.tolerance = 1e-13;
   model::Model model(scene, Tpetra::getDefaultComm());

@@ -1,5 +1,5 @@
-// An inclined fracture through a box that is turned, moved far away, renumbered, or has its sides exchanged: the same
-// state in every frame. And when a fracture under uniaxial compression slips.
+// Inclined fracture through a box that is rotated, translated, renumbered, or has exchanged sides: the state is the
+// same in every frame. Further tests: onset of slip under uniaxial compression.
 #include "verification/patch/inclined.hpp"
 
 #include <random>
@@ -7,8 +7,8 @@
 namespace sprekk::tests {
 namespace {
 
-/// How the box of inclined_box_2d.xml or 3d.xml is placed: its middle, before it turns about the origin, and its half
-/// width.
+/// Placement of the box of inclined_box_2d.xml or 3d.xml: its centre before the rotation about the origin, and its
+/// half width.
 struct Placing {
   std::string cell;
   int order = 1;
@@ -16,12 +16,12 @@ struct Placing {
   Vector3 axis = {0, 0, 1}, middle = {};
   Real half_width = 1;
   bool swap = false;
-  int seed = 0;  ///< of a renumbering; 0: none
+  int seed = 0;  ///< seed of a renumbering; 0: none
 };
 
 int dim_of(const std::string& cell) { return cell == "quadrilateral" || cell == "triangle" ? 2 : 3; }
 
-/// The scene with its box placed so.
+/// Returns the scene with its box placed by p.
 model::Scene placed_scene(const Placing& p) {
   const int dim = dim_of(p.cell);
   auto scene = read_scene(fmt::format("verification/inclined_box_{}d.xml", dim), {"Mesh.cell=" + p.cell});
@@ -55,7 +55,7 @@ void expect_placed(const Placing& p, bool slips, Real tolerance) {
   expect_solves(scene, patch, tolerance);
 }
 
-/// The scenes as they are.
+/// The unchanged scenes.
 TEST(TurnedPatch, Scenes) {
   for (const int dim : {2, 3})
     for (const auto& cell : cells_of(dim)) {
@@ -83,8 +83,8 @@ TEST(TurnedPatch, AnyAxis3D) {
   }
 }
 
-/// At 1e6 m the coordinates of a turned box are rounded to 6e-11 m, half a unit in their last place: over faces of 0.5
-/// m the normal of the fracture varies by some 1e-10, and with it what the jump is made of.
+/// At 1e6 m, coordinates of a rotated box are rounded to 6e-11 m (half a unit in the last place). Over faces of 0.5 m
+/// the normal of the fracture varies by about 1e-10, and with it the components of the jump.
 TEST(TurnedPatch, FarAway) {
   for (const int dim : {2, 3})
     for (const auto& cell : cells_of(dim))
@@ -95,8 +95,8 @@ TEST(TurnedPatch, FarAway) {
               1e-9);
 }
 
-/// A joint at an angle beta to the horizontal under vertical compression: the shear is tan(beta) times the normal
-/// force.
+/// Returns the state of a joint at an angle beta to the horizontal under vertical compression: the shear is tan(beta)
+/// times the normal force.
 Patch uniaxial_patch(Real degrees) {
   auto patch = uniform_patch(2, {{{0, 0, 0}, {0, -1, 0}, {0, 0, 0}}});
   const auto n = times(rotation(degrees, {0, 0, 1}), up(2));
@@ -105,7 +105,7 @@ Patch uniaxial_patch(Real degrees) {
   return patch;
 }
 
-/// The lower block held, the upper one loaded by tractions all around.
+/// Returns the scene with a fixed lower block and tractions on all sides of the upper block.
 model::Scene uniaxial_scene(Real degrees, const std::string& cell) {
   auto scene = placed_scene({cell, 1, degrees});
   const auto patch = uniaxial_patch(degrees);
@@ -120,7 +120,7 @@ model::Scene uniaxial_scene(Real degrees, const std::string& cell) {
   return scene;
 }
 
-/// Slip if and only if tan(beta) > mu = 0.6, that is beyond 30.96 degrees; loaded by tractions the upper block then has
+/// Slip begins if tan(beta) > mu = 0.6, i.e. above 30.96 degrees. Under prescribed tractions, the upper block then has
 /// no equilibrium.
 TEST(UniaxialCompression, BlockStaysUpToTheFrictionAngle) {
   for (const auto& cell : cells_of(2))
@@ -136,7 +136,8 @@ TEST(UniaxialCompression, BlockStaysUpToTheFrictionAngle) {
     }
 }
 
-/// Held by the displacements of the sticking state on its whole boundary: beyond the friction angle every face slips.
+/// Displacements of the sticking state are prescribed on the whole boundary: above the friction angle every face
+/// slips.
 TEST(UniaxialCompression, FacesSlipBeyondTheFrictionAngle) {
   for (const auto& cell : cells_of(2))
     for (const Real degrees : {30.97, 32.0, 45.0, -30.97}) {

@@ -1,4 +1,4 @@
-// Time steps that choose themselves, of whole scenes.
+// Adaptive time steps of whole scenes.
 #include "base/over_ranks.hpp"
 #include "model/steps.hpp"
 #include "verification/scenes.hpp"
@@ -9,7 +9,7 @@
 namespace sprekk::tests {
 namespace {
 
-/// A scene whose steps are chosen.
+/// Returns a scene with adaptive steps.
 model::Scene chosen(const std::string& name, Real tolerance, const std::vector<std::string>& overrides = {}) {
   auto scene = read_scene(name, overrides);
   scene.time.steps.reset();
@@ -17,7 +17,7 @@ model::Scene chosen(const std::string& name, Real tolerance, const std::vector<s
   return scene;
 }
 
-/// All steps of a scene that are kept; `visit` sees the model after each.
+/// Runs all steps of a scene and returns the accepted ones; calls visit(model, step) after each.
 template <class Visit>
 std::vector<model::StepTaken> go(const model::Scene& scene, const Visit& visit) {
   model::Model model(scene, Tpetra::getDefaultComm());
@@ -36,7 +36,7 @@ std::vector<model::StepTaken> go(const model::Scene& scene) {
   return go(scene, [](auto&, auto&) {});
 }
 
-/// Errors are held at the tolerance: n steps of an error of order p cost n ~ tolerance^(-1/p).
+/// Errors are controlled at the tolerance: with order p, the number of steps is n ~ tolerance^(-1/p).
 TEST(ChosenSteps, GrowInNumberAsTheirOrderSays) {
   const std::map<std::string, std::pair<int, Real>> cases = {{"implicit Euler", {1, 5e-4}}, {"BDF2", {2, 1e-4}}};
   for (const auto& [scheme, numbers] : cases) {
@@ -49,7 +49,7 @@ TEST(ChosenSteps, GrowInNumberAsTheirOrderSays) {
   }
 }
 
-/// The path of fifty steps, whose loads are tables with corners at uneven times: they are met to any bit.
+/// Loads are tables with knots at irregular times. Steps end exactly at knots and scheduled times.
 TEST(ChosenSteps, EndAtKnotsAndAtTimesOfASchedule) {
   auto scene = chosen("verification/turning_shear_3d.xml", 0.05);
   scene.time.schedule = {0.37, 2};
@@ -62,7 +62,7 @@ TEST(ChosenSteps, EndAtKnotsAndAtTimesOfASchedule) {
   for (const Real t : {0.37, 1.0, 2.0}) EXPECT_EQ(std::count(ends.begin(), ends.end(), t), 1) << t;
 }
 
-/// Without a table nothing names the corners of a triangular wave; steps become short there.
+/// Sinusoidal load without a table: the error control limits the step length.
 TEST(ChosenSteps, SeeLoadsThatTurnWithinAStep) {
   auto scene = chosen("verification/cyclic_2d.xml", 1e-2);
   const Real end = scene.time.times().back();
@@ -74,11 +74,11 @@ TEST(ChosenSteps, SeeLoadsThatTurnWithinAStep) {
       }
   Real longest = 0;
   for (const auto& step : go(scene)) longest = std::max(longest, step.end - step.begin);
-  EXPECT_LT(longest * 12 / end, std::sqrt(8 * 1.3e-2 / 0.3));  // (omega dt)^2/8 of the amplitude
+  EXPECT_LT(longest * 12 / end, std::sqrt(8 * 1.3e-2 / 0.3));  // (omega dt)^2/8 relative to the amplitude
   EXPECT_GT(longest * 12 / end, 0.05);
 }
 
-/// What is rejected leaves no trace: the steps that were kept, taken again one by one, give the same state.
+/// Rejected steps have no effect: the accepted steps, repeated with a schedule, give the same states.
 TEST(ChosenSteps, RejectWithoutATrace) {
   auto scene = chosen("verification/turning_shear_3d.xml", 0.02);
   int n_rejected = 0;
@@ -96,7 +96,7 @@ TEST(ChosenSteps, RejectWithoutATrace) {
      [&](auto& model, auto&) { EXPECT_NEAR(mean(model, Outputs(model)["plastic jump local"], 1), slip[k++], 1e-9); });
 }
 
-/// What injection has left after it has ended.
+/// State at the end of a run, after injection.
 struct AfterShutIn {
   std::vector<Real> slip, pressure;  ///< [owned face], [owned cell]
   Real stored = 0, injected = 0;     ///< volumes
@@ -122,7 +122,7 @@ AfterShutIn shut_in(const model::Scene& scene) {
   return after;
 }
 
-/// The root mean square of a - b, relative to the largest of b. Collective.
+/// Returns the root mean square of a - b, relative to the largest value of b. Collective.
 Real difference(const std::vector<Real>& a, const std::vector<Real>& b) {
   const auto comm = Tpetra::getDefaultComm();
   Real square = 0, largest = 0;
@@ -134,9 +134,9 @@ Real difference(const std::vector<Real>& a, const std::vector<Real>& b) {
   return std::sqrt(base::sum_over_ranks(*comm, square) / n) / base::max_over_ranks(*comm, largest);
 }
 
-/// Nothing leaves the box, whose volume stays, and the Biot coefficient is 1: the compressibility of pores stores what
-/// is injected, for what joints hold they took from the rock. Slip begins at a pressure, beyond which it is a part of
-/// the pressure's change alone: it is known less well by a factor of up to three.
+/// The box has no outflow and constant volume, and the Biot coefficient is 1. Pores store the injected volume by their
+/// compressibility, because fluid in joints replaces rock volume. Slip begins at a threshold pressure and depends on
+/// the pressure change above it. Its relative error is therefore up to three times larger.
 TEST(ChosenSteps, ConserveFluidAndMeetSlipAfterShutIn) {
   auto scene = read_scene("poro/shut_in_2d.xml", {"Time.tolerance=0.03"});
   scene.solver.tolerance = 1e-12;

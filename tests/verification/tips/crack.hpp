@@ -1,5 +1,5 @@
-// A straight crack of half-length 1 in the plane (Sneddon 1946), on whose surroundings the exact
-// displacement is prescribed. It opens or slides by 2 (1 - nu) s/G sqrt(1 - x^2), s the stress that it releases.
+// Straight crack of half-length 1 in the plane (Sneddon 1946), with the exact displacement prescribed on the boundary.
+// It opens or slips by 2 (1 - nu) s/G sqrt(1 - x^2), with the released stress s.
 #pragma once
 
 #include "verification/patch/patch.hpp"
@@ -10,7 +10,7 @@ inline model::Scene crack(const std::string& name, const std::vector<std::string
                            overrides);
 }
 
-/// The same crack in a box of squares or cubes, or of their parts; in 3D a slab in plane strain.
+/// Returns the crack in a box of squares or cubes, or of triangles or tetrahedra; in 3D a slab in plane strain.
 inline model::Scene crack_in_box(const std::string& name, const std::string& cell, int order, int n,
                                  const std::string& tips) {
   auto scene = crack(name, {});
@@ -51,8 +51,8 @@ inline model::Scene crack_in_box(const std::string& name, const std::string& cel
   return scene;
 }
 
-/// Mean of sqrt(1 - x^2) over a face whose corners have these x: a segment or a rectangle, or a right triangle, which
-/// is as wide as the distance from the corner that is alone with its x.
+/// Returns the mean of sqrt(1 - x^2) over a face with these x of its corners. Faces are segments, rectangles, or right
+/// triangles with two corners of equal x.
 inline Real mean_root(std::vector<Real> x) {
   for (Real& v : x) v = std::max<Real>(-1, std::min<Real>(1, v));
   std::sort(x.begin(), x.end());
@@ -66,7 +66,7 @@ inline Real mean_root(std::vector<Real> x) {
   return std::abs(moment(high) - moment(low) - alone * area) * 2 / (h * h);
 }
 
-/// Relative L2 error of the mean jump of the faces, all components. Collective.
+/// Returns the relative L2 error of the mean jumps of faces, all components. Collective.
 inline Real jump_error(const model::Scene& scene, int direction) {
   model::Model model(scene, Tpetra::getDefaultComm());
   const auto report = model.step_to(1);

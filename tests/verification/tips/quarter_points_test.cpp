@@ -1,17 +1,18 @@
-// Crack tips at order 2.
+// Crack tips with order 2.
 #include "verification/tips/crack.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// On 1,422 triangles. The bounds are below a seventh of what nodes in the middle of all edges give, 1.9e-2 and 3.2e-2.
+/// 1,422 triangles. Without quarter points the errors are 1.9e-2 and 3.2e-2; the bounds are less than a sixth of
+/// these.
 TEST(QuarterPoints, OpeningAndSlidingOfACrack) {
   EXPECT_LE(jump_error(crack("opening", {"Mesh file.order=2"}), 1), 3.0e-3);
   EXPECT_LE(jump_error(crack("sliding", {"Mesh file.order=2"}), 0), 4.0e-3);
   EXPECT_GE(jump_error(crack("opening", {"Mesh file.order=2", "Mesh file.tips=plain"}), 1), 1.5e-2);
 }
 
-/// With four faces, or four by two triangles, along the crack.
+/// Four faces, or four by two triangles, along the crack.
 TEST(QuarterPoints, OfAllCells) {
   for (const std::string cell : {"triangle", "quadrilateral", "tetrahedron", "hexahedron"})
     for (const auto& [name, direction] : {std::pair{"opening", 1}, std::pair{"sliding", 0}}) {
@@ -23,7 +24,7 @@ TEST(QuarterPoints, OfAllCells) {
     }
 }
 
-/// Linear displacements are exact with tips in the mesh: a crack that sticks under uniform stress.
+/// Linear displacements are exact on meshes with tips: a sticking crack under uniform stress.
 TEST(QuarterPoints, PatchAroundTips) {
   for (const std::string cell : {"triangle", "quadrilateral", "tetrahedron", "hexahedron"}) {
     SCOPED_TRACE(cell);

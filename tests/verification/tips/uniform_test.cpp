@@ -1,4 +1,4 @@
-// Fractures that end inside of rock under uniform stress: no tip is felt where the fracture neither opens nor slips.
+// Fractures that end inside rock under uniform stress: without opening and slip, tips have no effect.
 #include "unit/mesh/meshes.hpp"
 #include "verification/patch/patch.hpp"
 
@@ -7,7 +7,7 @@ namespace {
 
 const Matrix3 stress{{{-0.8, 0.15, 0.05}, {0.15, -0.5, -0.1}, {0.05, -0.1, -0.6}}};
 
-/// Fractures that end inside, on each other, and on the boundary; rigid where they touch, with friction to spare.
+/// Returns fractures that end inside, at each other, and on the boundary: rigid in contact, with sufficient friction.
 model::Scene rigid_network(const std::string& cell, int order) {
   model::Scene scene;
   scene.mesh = mesh::testing::crossed(cell);
@@ -40,7 +40,7 @@ void hold(model::Scene& scene, const std::function<base::Expression(int)>& displ
   }
 }
 
-/// Largest errors of displacement, stress, traction and jump. Collective.
+/// Compares displacement, stress, traction and jump with exact values. Collective.
 void expect_uniform(const model::Scene& scene, const std::function<Real(const Vector3&, int)>& u) {
   model::Model model(scene, Tpetra::getDefaultComm());
   const auto report = model.step_to(1);
@@ -49,7 +49,7 @@ void expect_uniform(const model::Scene& scene, const std::function<Real(const Ve
   const auto& mesh = model.mesh();
   const int dim = mesh.dim();
   const auto forces = model.system().reactions(model.state());
-  EXPECT_EQ(forces.size(), 2u * dim);  // one of each condition
+  EXPECT_EQ(forces.size(), 2u * dim);  // one per condition
   Vector3 total{}, moment{};
   for (const auto& reaction : forces)
     for (int i = 0; i < 3; ++i) {
