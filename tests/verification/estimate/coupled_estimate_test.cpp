@@ -1,4 +1,4 @@
-// Estimates of the errors of what flows and of what it moves, against solutions that are exact but for the mesh.
+// Error estimates of coupled flow, heat and mechanics, compared with solutions that are exact up to mesh errors.
 #include "model/goals.hpp"
 #include "verification/heat/warm_boxes.hpp"
 
@@ -9,10 +9,10 @@ namespace {
 
 struct Measured {
   Real value, error;
-  std::optional<Real> lack;  // with its sign
+  std::optional<Real> lack;  // signed
 };
 
-/// Of a quantity, after all steps.
+/// Returns value and estimated error of a quantity after all steps.
 Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const Comm> comm = Tpetra::getDefaultComm()) {
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
@@ -29,7 +29,7 @@ Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const 
     goals.add(outputs, estimate, estimator, t == times.back());
     goals.weigh(outputs, estimate, estimator, t == times.back());
   }
-  Real marked = 0;  // of all shares, which make up one
+  Real marked = 0;  // sum of all shares, which is one
   for (const Real share : goals.indicators({{"goal", 1}})) marked += share;
   Real all = 0;
   Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 1, &marked, &all);
@@ -39,7 +39,7 @@ Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const 
   return {goal.value, goal.error, of_functional ? std::optional(of_functional->lack) : std::nullopt};
 }
 
-/// Estimate over error on two meshes; the error falls with this order.
+/// Compares estimate and error on several meshes; the error must decrease with the given order.
 void compare(const std::string& name, const model::Quantity& quantity, Real exact, Real order,
              const std::vector<model::Scene>& scenes) {
   SCOPED_TRACE(name + ", " + quantity.title());
@@ -68,9 +68,9 @@ model::Quantity through(const std::string& what, const std::string& boundary, co
 
 constexpr int n_steps = 4;
 constexpr Real dt = 0.05, lambda = 2, G = 1, alpha = 0.8, mobility = 0.3, storage = 0.5;
-constexpr Real modulus = lambda + 2 * G, rate = M_PI * M_PI / 4;  // of cos(pi y/2) under -d^2/dy^2
+constexpr Real modulus = lambda + 2 * G, rate = M_PI * M_PI / 4;  // eigenvalue of -d^2/dy^2 for cos(pi y/2)
 
-/// A column as wide as 1/2 and as high as 1 between walls, on a floor, with a free top.
+/// Returns a column of width 1/2 and height 1 between walls, on a floor, with a free top.
 model::Scene column(const std::string& cell, int order, int n) {
   const bool flat = is_flat(cell);
   std::vector<std::string> sets = {
@@ -88,8 +88,8 @@ model::Scene column(const std::string& cell, int order, int n) {
   return scene;
 }
 
-/// The strain upwards is alpha (p - p_0)/M where nothing holds the top, so that p_0, a cosine of the height, decays as
-/// a whole, by a factor in each step, and the walls feel -alpha (1 - lambda/M) times how it changes.
+/// With a free top, the vertical strain is alpha (p - p_0)/M. Thus p_0, a cosine of the height, decays by a constant
+/// factor per step. The stress change at the walls is -alpha (1 - lambda/M) times the pressure change.
 TEST(CoupledEstimate, ConsolidationOfAColumn) {
   const Real left = std::pow(1 + mobility / (storage + alpha * alpha / modulus) * rate * dt, -n_steps);
   for (const std::string cell : {"triangle", "tetrahedron"})
@@ -114,7 +114,8 @@ TEST(CoupledEstimate, ConsolidationOfAColumn) {
     }
 }
 
-/// The same of heat: rock that shrinks as it cools, at the walls by -3K alpha_T (1 - lambda/M) of the change.
+/// Same problem for heat: rock shrinks as it cools, with the wall stress -3K alpha_T (1 - lambda/M) times the
+/// temperature change.
 TEST(CoupledEstimate, CoolingOfAColumn) {
   constexpr Real conductivity = 0.3, capacity = 0.7, expansion = 0.2, stiffness = (3 * lambda + 2 * G) * expansion;
   const Real left = std::pow(1 + conductivity / capacity * rate * dt, -n_steps);
@@ -139,7 +140,7 @@ TEST(CoupledEstimate, CoolingOfAColumn) {
   }
 }
 
-/// Steady: what flows from the west to the east carries heat against conduction, T = (e^(P x) - 1)/(e^P - 1), upwind.
+/// Steady heat advection from west to east with conduction, upwind: T = (e^(P x) - 1)/(e^P - 1).
 TEST(CoupledEstimate, HeatThatAFluidCarries) {
   constexpr Real P = 3, conductivity = 0.5;
   for (const std::string cell : {"triangle", "tetrahedron"}) {
@@ -171,7 +172,7 @@ TEST(CoupledEstimate, HeatThatAFluidCarries) {
   }
 }
 
-/// A fracture that fluid opens and cools, so short that most ranks have none of it.
+/// A fracture that is opened and cooled by fluid, so short that most ranks have no part of it.
 TEST(CoupledEstimate, SameOnAnyNumberOfRanks) {
   for (const std::string cell : {"triangle", "tetrahedron"}) {
     const bool flat = is_flat(cell);

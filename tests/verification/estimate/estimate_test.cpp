@@ -1,4 +1,4 @@
-// What a run says of its own error, against the error: of stress and jump, where both are known.
+// Error estimates of stress and jump, compared with known errors.
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "model/results.hpp"
@@ -13,7 +13,7 @@ using Function = std::function<Vector3(const Vector3& x, bool above)>;
 
 model::ErrorEstimate estimate(model::Model& model) { return model::ErrorEstimator(model)(Outputs(model).all()); }
 
-/// s : C^-1 s of rock with the constants of `law`.
+/// Returns s : C^-1 s of rock with the constants of `law`.
 template <int dim>
 Real energy(const laws::Elasticity& law, const Real (&s)[dim][dim]) {
   Real trace = 0, square = 0;
@@ -23,8 +23,8 @@ Real energy(const laws::Elasticity& law, const Real (&s)[dim][dim]) {
   return (square - law.lambda / (dim * law.lambda + 2 * law.G) * trace * trace) / (2 * law.G);
 }
 
-/// Norm of the error of the stress of a model's displacement, in the energy of one uniform rock. The exact one comes
-/// from central differences of the displacement u on either side of y (z) = middle. Collective.
+/// Returns the energy norm of the stress error of a model, for uniform rock. The exact stress is from central
+/// differences of the displacement u on both sides of y (z) = middle. Collective.
 Real stress_error(model::Model& model, const Function& u, Real middle) {
   const auto& mesh = model.mesh();
   const Outputs out(model);
@@ -62,7 +62,7 @@ Real stress_error(model::Model& model, const Function& u, Real middle) {
   return std::sqrt(base::sum_over_ranks(*mesh.comm, square));
 }
 
-/// Norm of the error of the faces' mean jumps. Collective.
+/// Returns the norm of the error of the mean jumps of faces. Collective.
 Real jump_error(model::Model& model, const Function& u) {
   const auto& mesh = model.mesh();
   const Outputs out(model);
@@ -82,7 +82,8 @@ Real jump_error(model::Model& model, const Function& u) {
   return std::sqrt(base::sum_over_ranks(*mesh.comm, square));
 }
 
-/// The displacement that a manufactured scene prescribes on the boundaries of its regions "below" and "above".
+/// Returns the exact displacement that a manufactured scene prescribes on the boundaries of its regions "below" and
+/// "above".
 Function manufactured(const model::Scene& scene) {
   const auto* sides = &scene.boundary_conditions;
   return [sides](const Vector3& x, bool above) {
@@ -99,7 +100,7 @@ void expect_between(Real ratio, Real least, Real most, const char* what) {
   if (Tpetra::getDefaultComm()->getRank() == 0) fmt::print("  {} {:.2f}", what, ratio);
 }
 
-/// Smooth solutions: both errors to a factor of two, on meshes that are not the coarsest.
+/// Smooth solutions: estimates of both errors within a factor of two, except on the coarsest meshes.
 TEST(ErrorEstimate, ManufacturedSolutions) {
   for (const int dim : {2, 3})
     for (const std::string regime : {"stick", "slip", "mixed"})
@@ -121,8 +122,8 @@ TEST(ErrorEstimate, ManufacturedSolutions) {
       }
 }
 
-/// Cracks whose tips decide the error. Plain tips have no modes: there the estimate may be a bit below half. The jump
-/// is 2 (1 - nu) s/G sqrt(1 - x^2) along x (mode II) or y (mode I).
+/// Cracks whose error is dominated by the tips. For plain tips the estimate has no tip modes and may be slightly below
+/// half of the error. The jump is 2 (1 - nu) s/G sqrt(1 - x^2) along x (mode II) or y (mode I).
 TEST(ErrorEstimate, Cracks) {
   for (const std::string name : {"sneddon", "sneddon_shear"})
     for (const auto& [order, tips] : {std::pair{1, "plain"}, {1, "enriched"}, {2, "plain"}, {2, "enriched"}}) {
@@ -166,9 +167,9 @@ TEST(ErrorEstimate, Cracks) {
     }
 }
 
-/// Contact that ends within a face, which is open or closed as a whole: half a wave of a fracture that is pressed
-/// together (Westergaard 1939), see perf/verification/exact.py. What a mean pressure less than p* and waves p_k of the
-/// pressure open: -2 sum p_k/(k G/(1 - nu)) in the mean.
+/// Partial contact that ends within a face, while the face is open or closed as a whole: half a wave of a compressed
+/// fracture (Westergaard 1939), see perf/verification/exact.py. For a mean pressure below p* and Fourier coefficients
+/// p_k of the pressure, the mean opening is -2 sum p_k/(k G/(1 - nu)).
 TEST(ErrorEstimate, ContactThatEndsWithinAFace) {
   constexpr Real modulus = 1 / 0.75, load = 0.4, full = M_PI * modulus * 0.01;
   constexpr int n = 2048;
@@ -202,7 +203,7 @@ TEST(ErrorEstimate, ContactThatEndsWithinAFace) {
   }
 }
 
-/// Solutions that are in the discrete space.
+/// Solutions in the discrete space have no error.
 TEST(ErrorEstimate, NoneWhereThereIsNone) {
   for (const int dim : {2, 3})
     for (const auto& d : discretisations(dim)) {
@@ -216,7 +217,7 @@ TEST(ErrorEstimate, NoneWhereThereIsNone) {
     }
 }
 
-/// The same with all ranks together as with each alone. Collective.
+/// Checks that all ranks together give the estimates of each rank alone. Collective.
 void expect_same_on_ranks(const model::Scene& scene, Real tolerance) {
   const RCP<const Comm> alone = rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
   model::Model together(scene, Tpetra::getDefaultComm()), single(scene, alone);
@@ -245,7 +246,7 @@ TEST(ErrorEstimate, OfCracksTheSameOnAnyNumberOfRanks) {
     }
 }
 
-/// Rock without fractures, rock that does not move, and rock at rest under its initial stress.
+/// Rock without fractures, rock without displacement, and rock at rest under its initial stress.
 TEST(ErrorEstimate, OfWhatHasNoJump) {
   model::Model intact(read_scene("verification/uniaxial_2d.xml"), Tpetra::getDefaultComm());
   ASSERT_TRUE(intact.step_to(intact.scene().time.times().front()).converged);

@@ -1,4 +1,4 @@
-// Numbers that a run is to know, their errors, and the cells that are to blame.
+// Quantities of interest, their errors, and the cells to refine.
 #include "model/goals.hpp"
 #include "verification/scenes.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 struct Crack {
   std::string scene, quantity;
-  int component;  // of the jump that the number is the mean of, up to its sign
+  int component;  // component of the jump; the quantity is its mean, up to the sign
 };
 
 const std::vector<Crack> cracks = {{"sneddon", "opening", 1}, {"sneddon_shear", "slip", 0}};
@@ -30,7 +30,7 @@ Real sum(const Comm& comm, const std::vector<Real>& here) {
   return all;
 }
 
-/// The estimate by the exact value; the bound that cells add up to by the estimate, and not far above it.
+/// Compares the estimate with the exact error, and the bound from cells with the estimate.
 TEST(Goals, ErrorsOfCracksAndTheirBounds) {
   for (const auto& crack : cracks)
     for (const int order : {1, 2}) {
@@ -65,8 +65,8 @@ TEST(Goals, ErrorsOfCracksAndTheirBounds) {
     }
 }
 
-/// In 3D: along its fronts a crack slides in mode III, where cells touch the front with an edge or a corner alone; with
-/// the front of another fracture, which is held together, in the same cells.
+/// Mode III along the fronts of a crack in 3D, where cells touch the front with only an edge or a corner. Optionally,
+/// the front of another fracture without jump is in the same cells.
 TEST(Goals, ErrorsOfTearing) {
   for (const int order : {1, 2})
     for (const bool glued : {false, true}) {
@@ -94,7 +94,8 @@ TEST(Goals, ErrorsOfTearing) {
     }
 }
 
-/// Of the reaction of a block with free sides and a compliant fracture, by perf/verification/references/free_sides.csv.
+/// Reaction of a block with free sides and a compliant fracture; reference:
+/// perf/verification/references/free_sides.csv.
 TEST(Goals, ErrorsOfReactions) {
   for (const int order : {1, 2}) {
     SCOPED_TRACE(fmt::format("order {}", order));
@@ -118,7 +119,8 @@ TEST(Goals, ErrorsOfReactions) {
   }
 }
 
-/// 2, 4, 8, ... and 0: half of the sum is in the largest, 0.7 in two of them; equal ones come together.
+/// Values 2, 4, 8, ... and 0: the largest contains half of the sum, the two largest 0.7. Equal values are marked
+/// together.
 TEST(Goals, MarksTheFewestCells) {
   const auto comm = Tpetra::getDefaultComm();
   std::vector<Real> here;

@@ -1,4 +1,4 @@
-// Boxes with two fractures that cross, and what the suites of flow measure in them.
+// Boxes with two crossing fractures, and quantities that the suites of flow compare.
 #pragma once
 
 #include "../scenes.hpp"
@@ -10,7 +10,8 @@ constexpr Real aperture = 1e-3, viscosity = 2;
 
 inline bool is_flat(const std::string& cell) { return cell == "triangle" || cell == "quadrilateral"; }
 
-/// The unit square or cube with fractures at y = 1/2, "a", and x = 1/2, "b"; closed on all sides.
+/// Returns the unit square or cube with the fractures "a" at y = 1/2 and, if `with_b`, "b" at x = 1/2; all sides are
+/// closed.
 inline model::Scene closed_box(const std::string& cell, bool with_b = true, int n = 4) {
   const bool flat = is_flat(cell);
   auto scene = read_scene(flat ? "flow/source_2d.xml" : "flow/source_3d.xml");
@@ -30,7 +31,7 @@ inline model::Scene closed_box(const std::string& cell, bool with_b = true, int 
   return scene;
 }
 
-/// A pressure on one side, of the rock and of fractures that end there, or of a fracture alone.
+/// Prescribes a pressure on one side, for the rock and fractures that end there, or for a fracture only.
 inline void hold(model::Scene& scene, const std::string& side, const std::string& pressure,
                  const std::string& fracture = "") {
   auto& condition = scene.boundary_conditions[side];
@@ -39,7 +40,7 @@ inline void hold(model::Scene& scene, const std::string& side, const std::string
   if (!fracture.empty()) condition.fracture = fracture;
 }
 
-/// What flows in at a side with a prescribed pressure. Collective.
+/// Returns the inflow at a side with a prescribed pressure. Collective.
 inline Real inflow(model::Model& model, const std::string& condition) {
   for (const auto& reaction : model.system().reactions(model.state()))
     if (reaction.condition == condition) return reaction.force.at(0);
@@ -47,7 +48,7 @@ inline Real inflow(model::Model& model, const std::string& condition) {
   return 0;
 }
 
-/// The largest difference from an exact vector or number on owned entities, over all ranks.
+/// Returns the largest difference from an exact vector or scalar on owned entities, over all ranks. Collective.
 template <class Exact>
 Real error(model::Model& model, const std::string& output, const Exact& exact) {
   const auto field = model.output(output);

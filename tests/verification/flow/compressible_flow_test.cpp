@@ -1,14 +1,14 @@
-// Flow of a fluid whose density is exponential in its pressure, against exact solutions: where it is at rest, and where
-// it flows without gravity, in which case the density is what the pressure is without compressibility.
+// Flow of a fluid with a density exponential in the pressure, compared with exact solutions: at rest, and in flow
+// without gravity. Without gravity, the density satisfies the equation of the pressure of an incompressible fluid.
 #include "boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
 constexpr Real c = 2, reference = 0.5;
-constexpr Real steady = 1e15;  // fractures store the fluid: so long a step lets them be filled
+constexpr Real steady = 1e15;  // a step so long that the fractures fill to their steady state
 
-/// The pressure at which the density is e times that at reference conditions.
+/// Returns the pressure for a density of e times the reference density.
 Real pressure_at(Real e) { return reference + std::log(e) / c; }
 std::string text_of(Real number) { return fmt::format("{:.17g}", number); }
 
@@ -20,7 +20,7 @@ model::Scene compressible_box(const std::string& cell, int n = 4) {
   return scene;
 }
 
-/// The density falls linearly from west to east in rock, and in fractures along the flow and across it.
+/// The density decreases linearly from west to east in rock, and in fractures along and across the flow.
 TEST(CompressibleFlow, DensityIsLinearInSteadyFlow) {
   for (const std::string cell : all_cells)
     for (const Real k : {1e-3, 1e4}) {
@@ -45,7 +45,7 @@ TEST(CompressibleFlow, DensityIsLinearInSteadyFlow) {
     }
 }
 
-/// At rest 1/e is linear in the height, whatever conducts.
+/// At rest, 1/e is linear in the height, independent of permeabilities.
 TEST(CompressibleFlow, AColumnAtRestIsExact) {
   for (const std::string cell : all_cells)
     for (const Real k_n : {1e-6, std::numeric_limits<Real>::infinity()}) {
@@ -54,7 +54,7 @@ TEST(CompressibleFlow, AColumnAtRestIsExact) {
       const int up = flat ? 1 : 2;
       scene.flow->density = 0.5;
       scene.bulk.gravity.assign(up + 1, 0);
-      scene.bulk.gravity[up] = -0.5;  // so d(1/e)/dy = 1/2
+      scene.bulk.gravity[up] = -0.5;  // then d(1/e)/dy = 1/2
       scene.materials.at("joint").tangential_permeability = 100;
       scene.materials.at("joint").normal_permeability = k_n;
       scene.materials.at("rock").permeability = {base::Expression(flat ? "1 + y" : "1 + z")};
@@ -70,7 +70,7 @@ TEST(CompressibleFlow, AColumnAtRestIsExact) {
     }
 }
 
-/// A box of rock in which the density on the west side is doubled. porosity de/dt = k/(mu c) div grad e.
+/// Box of rock with doubled density on the west side: porosity de/dt = k/(mu c) div grad e.
 struct Doubled {
   static constexpr Real porosity = 0.3, diffusivity = 1 / (viscosity * porosity * c);
 
@@ -91,7 +91,7 @@ struct Doubled {
     return scene;
   }
 
-  /// e at x and t, by separation of variables.
+  /// Returns e at x and t, by separation of variables.
   static Real density(Real x, Real t) {
     Real e = 2;
     for (int m = 0; m < 50; ++m) {
@@ -102,7 +102,7 @@ struct Doubled {
   }
 };
 
-/// Step by step it is the density, less 1, what the pressure is in pores that grow.
+/// In each step, the density minus 1 equals the pressure of a linear problem with compressible pores.
 TEST(CompressibleFlow, DensityFollowsThePressureOfALinearProblem) {
   for (const std::string cell : all_cells) {
     model::Model model(Doubled::scene(cell, 4, false), Tpetra::getDefaultComm());
@@ -129,12 +129,12 @@ TEST(CompressibleFlow, DensityDiffuses) {
       }));
     }
     EXPECT_LT(errors[1], 3e-3) << cell;
-    EXPECT_GT(errors[0] / errors[1], 3) << cell;  // of second order in the cells, first in the steps
+    EXPECT_GT(errors[0] / errors[1], 3) << cell;  // second order in the cells, first order in the steps
   }
 }
 
-/// What is put into rock and a fracture in a closed box is in their pores, to rounding. `growth` of the porosity with
-/// the pressure, 1/Pa; `set` says so to the rock.
+/// Checks that the volume injected into rock and a fracture in a closed box equals the change of storage, up to
+/// round-off. `growth` is the change of porosity with pressure, 1/Pa; `set` sets it in the rock.
 void expect_stored(const std::string& cell, const std::string& porosity, Real growth,
                    const std::function<void(physics::Material&)>& set) {
   auto scene = compressible_box(cell);
@@ -150,7 +150,7 @@ void expect_stored(const std::string& cell, const std::string& porosity, Real gr
   scene.solver.tolerance = 1e-14;
   model::Model model(scene, Tpetra::getDefaultComm());
   const auto& mesh = model.mesh();
-  const Real volume = 1.0 / static_cast<Real>(mesh.n_global_cells);  // all cells have the same
+  const Real volume = 1.0 / static_cast<Real>(mesh.n_global_cells);  // all cells have equal volumes
   base::Expression room(porosity);
   room.compile();
   const auto density = [](Real p) { return std::exp(c * (p - reference)); };
@@ -179,7 +179,7 @@ TEST(CompressibleFlow, StoresWhatIsPutIn) {
     expect_stored(cell, "0.2", 0.3, [](auto& rock) { rock.compressibility = 0.3; });
 }
 
-/// Also where the cells of a rank store nothing: here those in a corner alone do.
+/// Storage only in cells of one corner; other ranks have no storage.
 TEST(CompressibleFlow, StoresInPartsOfTheRock) {
   for (const std::string cell : all_cells) expect_stored(cell, "x < 0.25 ? (y < 0.25 ? 0.2 : 0) : 0", 0, [](auto&) {});
 }
@@ -189,7 +189,7 @@ TEST(CompressibleFlow, AnInfiniteBiotModulusStoresNothing) {
   expect_stored("triangle", "0", 0, infinite);
 }
 
-/// CG is for symmetric matrices only: with GMRES and multigrid the density is linear, too.
+/// CG is for symmetric matrices only. With GMRES and multigrid the density is linear, too.
 TEST(CompressibleFlow, IterativeSolvesFindIt) {
   for (const auto& [cell, n] : std::vector<std::pair<std::string, int>>{{"triangle", 32}, {"hexahedron", 12}}) {
     auto scene = compressible_box(cell, n);

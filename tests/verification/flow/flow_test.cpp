@@ -1,10 +1,10 @@
-// Flow through rock, against exact solutions of the equations and of the scheme.
+// Flow through rock, compared with exact solutions of the equations and of the discretisation.
 #include "boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// xml/flow/source_2d.xml or source_3d.xml with n cells along each edge.
+/// Returns xml/flow/source_2d.xml or source_3d.xml with n cells along each edge.
 model::Scene scene_of(const std::string& cell, int n, const std::string& scheme = "auto") {
   auto scene = read_scene(is_flat(cell) ? "flow/source_2d.xml" : "flow/source_3d.xml");
   scene.mesh.cell = cell;
@@ -21,8 +21,7 @@ Vector3 centre(const mesh::Mesh& mesh, LocalIndex cell) {
   return x;
 }
 
-/// Differences of cell pressure and Darcy velocity from functions of the place: roots of the mean squares over the
-/// cells. Collective.
+/// Returns the root mean squares, over cells, of the errors of pressure and Darcy velocity. Collective.
 template <class Pressure, class Velocity>
 std::array<Real, 2> errors(model::Model& model, const Pressure& p, const Velocity& v) {
   const auto pressure = model.output("pressure").values, velocity = model.output("Darcy velocity").values;
@@ -39,11 +38,11 @@ std::array<Real, 2> errors(model::Model& model, const Pressure& p, const Velocit
   return all;
 }
 
-/// Constant gradient under gravity in anisotropic rock, by pressures on all sides but the east, where the flow is
-/// given.
+/// Constant gradient under gravity in anisotropic rock, with prescribed pressures on all sides except a prescribed
+/// flux in the east.
 TEST(Flow, ConstantGradientIsExact) {
   const Vector3 gradient = {0.7, -0.3, 0.45};
-  const Real weight = 3 * -10;  // rho g of the last direction
+  const Real weight = 3 * -10;  // rho g in the last direction
   for (const std::string cell : all_cells) {
     auto scene = scene_of(cell, 3);
     const int dim = is_flat(cell) ? 2 : 3;
@@ -77,7 +76,7 @@ TEST(Flow, ConstantGradientIsExact) {
 TEST(Flow, ErrorsShrinkWithTheCells) {
   const auto shrinks = [](const std::string& cell, const std::string& scheme) {
     const int dim = is_flat(cell) ? 2 : 3;
-    const auto bump = [&](const Vector3& x, int along) {  // of the product of sines, or its derivative
+    const auto bump = [&](const Vector3& x, int along) {  // product of sines, or its derivative
       Real value = 1;
       for (int i = 0; i < dim; ++i) value *= i == along ? M_PI * std::cos(M_PI * x[i]) : std::sin(M_PI * x[i]);
       return value;
@@ -102,7 +101,7 @@ TEST(Flow, ErrorsShrinkWithTheCells) {
   shrinks("hexahedron", "tpfa");
 }
 
-/// What flows in at the sides and what wells up inside add up to nothing.
+/// The inflow at the sides and the source inside balance.
 TEST(Flow, IsInBalance) {
   for (const std::string cell : all_cells) {
     auto scene = scene_of(cell, 4);
@@ -117,7 +116,7 @@ TEST(Flow, IsInBalance) {
   }
 }
 
-/// The count hardly grows with the mesh, whatever the scheme couples on faces.
+/// The number of iterations is almost independent of the mesh, for all schemes.
 TEST(Flow, MultigridSolvesPressures) {
   for (const auto& [cell, scheme] : std::vector<std::array<std::string, 2>>{
            {"triangle", "rt0"}, {"tetrahedron", "rt0"}, {"quadrilateral", "tpfa"}, {"hexahedron", "mimetic"}}) {
@@ -135,7 +134,7 @@ TEST(Flow, MultigridSolvesPressures) {
   }
 }
 
-/// In a closed box the source fills what the pressure makes room for: c_phi dp/dt = source.
+/// In a closed box, the source increases the pressure: c_phi dp/dt = source.
 TEST(Flow, AClosedBoxFillsUp) {
   for (const std::string cell : all_cells) {
     auto scene = scene_of(cell, 2);
@@ -154,7 +153,8 @@ TEST(Flow, AClosedBoxFillsUp) {
   }
 }
 
-/// cos(pi x) decays, with two points and implicit Euler by 1/(1 + dt l/S) in a step, l = (2/h sin(pi h/2))^2.
+/// cos(pi x) decays by the factor 1/(1 + dt l/S) per step of implicit Euler, l = (2/h sin(pi h/2))^2 for two-point
+/// fluxes.
 TEST(Flow, AModeDecaysAsTheSchemeSays) {
   auto scene = scene_of("quadrilateral", 8, "tpfa");
   scene.boundary_conditions.clear();
@@ -169,7 +169,7 @@ TEST(Flow, AModeDecaysAsTheSchemeSays) {
     factor /= 1 + dt * root * root / 0.25;
     const auto error = errors(
         model, [&](const auto& x) { return factor * std::cos(M_PI * x[0]); },
-        [&](const auto& x) {  // the mean of the flows through the sides to the west and the east
+        [&](const auto& x) {  // mean of the fluxes through the west and east sides
           return Vector3{factor * root * std::cos(M_PI * h / 2) * std::sin(M_PI * x[0]), 0, 0};
         });
     EXPECT_LT(error[0], 1e-8);

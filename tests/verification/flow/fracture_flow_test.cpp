@@ -1,11 +1,11 @@
-// Flow along and across fractures, against exact solutions.
+// Flow along and across fractures, compared with exact solutions.
 #include "boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Linear pressure in a network whose fractures all end on the boundary, under gravity, with any transmissivity: in
-/// rock q = -k/mu (G - rho g), in fractures the part along them, times the aperture.
+/// Linear pressure in a network of fractures that all end on the boundary, under gravity, with any transmissivity. In
+/// rock q = -k/mu (G - rho g); in fractures its tangential part times the aperture.
 TEST(FractureFlow, LinearPressureThroughANetworkIsExact) {
   for (const std::string cell : all_cells)
     for (const Real k : {1e-3, 1e4}) {
@@ -53,7 +53,8 @@ TEST(FractureFlow, AFractureAcrossTheFlowResists) {
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const Real q = 1 / (viscosity * (1 + aperture / k));
-      const Real rounding = 1e-15 * (1 + k * aperture);  // of pressures near 1, times what conducts best
+      const Real rounding = 1e-15 * (1 + k * aperture);  // round-off of pressures near 1, times the largest
+                                                         // conductance
       EXPECT_NEAR(inflow(model, "west"), q, 1e-9 * q + 10 * rounding) << cell << ' ' << k;
       EXPECT_NEAR(inflow(model, "east"), -q, 1e-9 * q + 10 * rounding) << cell << ' ' << k;
       const auto half = [](const auto&, const auto&) { return Vector3{0.5}; };
@@ -61,7 +62,7 @@ TEST(FractureFlow, AFractureAcrossTheFlowResists) {
     }
 }
 
-/// Beside each other: Q = (k + a k_t)/mu dp/L, with k_t = a^2/12 where nothing is said, the cubic law.
+/// In parallel: Q = (k + a k_t)/mu dp/L, by default with k_t = a^2/12 (cubic law).
 TEST(FractureFlow, AFractureAlongTheFlowCarriesItsShare) {
   for (const std::string cell : all_cells)
     for (const Real k : {0.0, 1e-7, 1e13}) {
@@ -80,8 +81,8 @@ TEST(FractureFlow, AFractureAlongTheFlowCarriesItsShare) {
     }
 }
 
-/// Rough walls, the same with e = min(a, a^2/JRC^2.5) in micrometres for a: 1 m with JRC 300 carries as 0.6415 m, 2 m
-/// as if it were smooth.
+/// Rough walls: hydraulic aperture e = min(a, a^2/JRC^2.5) in micrometres. With JRC 300, 1 m conducts like 0.6415 m,
+/// and 2 m like a smooth fracture.
 TEST(FractureFlow, ARoughFractureCarriesLess) {
   for (const std::string cell : all_cells)
     for (const Real a : {1.0, 2.0}) {
@@ -100,8 +101,8 @@ TEST(FractureFlow, ARoughFractureCarriesLess) {
     }
 }
 
-/// Fractures that the rock does not let out, held at their ends alone: of four branches of length 1/2 one is at 1, the
-/// others are at 0, so the intersection is at 1/4.
+/// Fractures in almost impermeable rock, with prescribed pressures at their ends. Of four branches of length 1/2, one
+/// has the pressure 1 and the others 0, so the intersection has 1/4.
 TEST(FractureFlow, WhatFlowsIntoAnIntersectionFlowsOut) {
   for (const std::string cell : all_cells) {
     auto scene = closed_box(cell);
@@ -124,7 +125,7 @@ TEST(FractureFlow, WhatFlowsIntoAnIntersectionFlowsOut) {
   }
 }
 
-/// The open fracture "a" is cut by a sealed one: in series lie its halves and the filling, Q = dp/(1/T + a_b mu/(k_n
+/// A sealed fracture cuts the open fracture "a": its halves and the filling are in series, Q = dp/(1/T + a_b mu/(k_n
 /// a)).
 TEST(FractureFlow, ASealedFractureCutsAnOpenOne) {
   for (const std::string cell : all_cells)
@@ -150,8 +151,8 @@ TEST(FractureFlow, ASealedFractureCutsAnOpenOne) {
     }
 }
 
-/// A fracture that the rock does not let out: fed at its west end, it loses through a conductance at its east end as
-/// much to the pressure beyond. Of rock likewise.
+/// Fracture in almost impermeable rock: the inflow at its west end equals the outflow through a conductance at its
+/// east end. The same for rock.
 TEST(FractureFlow, FluxesAndConductancesAtEnds) {
   for (const std::string cell : all_cells)
     for (const bool in_fracture : {true, false}) {
@@ -165,7 +166,7 @@ TEST(FractureFlow, FluxesAndConductancesAtEnds) {
       west.boundary = "west";
       west.flux = base::Expression(-3.0);
       if (in_fracture) west.fracture = "a";
-      scene.flow->compressibility = 1e-30;  // or the pressure of the part that is not fed would be anything
+      scene.flow->compressibility = 1e-30;  // otherwise the pressure of the part without inflow is undetermined
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const Real slope = 3 * viscosity / (in_fracture ? 10 : 1);
@@ -177,8 +178,8 @@ TEST(FractureFlow, FluxesAndConductancesAtEnds) {
     }
 }
 
-/// Two fractures in tight rock that end on the boundary in one point. What is put in through the end of one leaves
-/// through that of the other; the report of what flows in knows of both.
+/// Two fractures in almost impermeable rock that meet at a point of the boundary. The inflow at the end of one
+/// fracture equals the outflow at the end of the other; the reported inflows include both.
 TEST(FractureFlow, TwoFracturesMeetOnTheBoundary) {
   auto scene = read_scene("flow/source_2d.xml");
   scene.mesh_file.emplace();

@@ -1,4 +1,4 @@
-// Pressures that are given in regions.
+// Pressures prescribed in regions.
 #include "boxes.hpp"
 
 #include "base/check.hpp"
@@ -6,7 +6,8 @@
 namespace sprekk::tests {
 namespace {
 
-/// The unit square or cube of 4 cells along each edge, closed, k/mu = 1, with a pressure in a slab x in [a, b].
+/// Returns the closed unit square or cube with 4 cells along each edge, k/mu = 1, and a pressure in the slab x in [a,
+/// b].
 model::Scene with_slab(const std::string& cell, Real a, Real b, const std::string& pressure) {
   auto scene = closed_box(cell, false);
   scene.mesh.fractures.clear();
@@ -21,7 +22,7 @@ model::Scene with_slab(const std::string& cell, Real a, Real b, const std::strin
   return scene;
 }
 
-/// What flows into the rock in a region, of its cells and facets. Collective.
+/// Returns the inflow into the rock in regions, at cells and facets. Collective.
 Real region_inflow(model::Model& model) {
   Real sum = 0;
   for (const auto& reaction : model.system().reactions(model.state()))
@@ -29,8 +30,8 @@ Real region_inflow(model::Model& model) {
   return sum;
 }
 
-/// A slab with p = (1 + 4 x) t between sides of 0 and 1: linear on either side of it, 8 flows out in the west and 4 in
-/// the east at t = 1.
+/// Slab with p = (1 + 4 x) t between sides with pressures 0 and 1. The pressure is linear on both sides of the slab;
+/// at t = 1 the outflow is 8 in the west and 4 in the east.
 TEST(RegionPressure, IsBetweenLinearProfiles) {
   for (const std::string cell : all_cells)
     for (const std::string solver : {"direct", "iterative"}) {
@@ -58,7 +59,7 @@ TEST(RegionPressure, IsBetweenLinearProfiles) {
     }
 }
 
-/// Storage does not keep cells from the pressure that is given: after a step that is short for the rest of the rock.
+/// Storage does not change the prescribed pressure, also after a step that is short for the rest of the rock.
 TEST(RegionPressure, HoldsAgainstStorage) {
   for (const std::string cell : all_cells) {
     SCOPED_TRACE(cell);
@@ -76,8 +77,8 @@ TEST(RegionPressure, HoldsAgainstStorage) {
   }
 }
 
-/// In a closed box at rest all has the pressure of a region, fractures inside of it and on its edge as well, and
-/// nothing flows.
+/// In a closed box at rest, the pressure of a region is the pressure everywhere, including fractures inside and on its
+/// boundary. All fluxes vanish.
 TEST(RegionPressure, IsThatOfFractures) {
   for (const std::string cell : all_cells)
     for (const bool half : {false, true}) {

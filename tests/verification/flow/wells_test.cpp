@@ -1,4 +1,4 @@
-// Wells, against flow to a line in a plane or space without end.
+// Wells, compared with flow to a line in an infinite plane or space.
 #include "boxes.hpp"
 
 namespace sprekk::tests {
@@ -6,7 +6,7 @@ namespace {
 
 constexpr Real radius = 1e-3, mu = 2;
 
-/// A square or cube of rock, edges of length 1 around the origin (3D: of height 1 from 0).
+/// Returns a square or cube of rock with edges of length 1 around the origin (3D: height from 0 to 1).
 model::Scene box(const std::string& cell, int n, const std::string& scheme) {
   const bool flat = is_flat(cell);
   auto scene = read_scene(flat ? "flow/source_2d.xml" : "flow/source_3d.xml");
@@ -32,7 +32,7 @@ physics::WellSection& add_well(model::Scene& scene, const std::vector<Real>& poi
   return well;
 }
 
-/// One of the totals of the well.
+/// Returns a total of the well, e.g. "rate".
 Real total(model::Model& model, const std::string& what) {
   for (const auto& one : model.system().totals(model.state()))
     if (one.names == std::vector<std::string>{"wells", "well", what}) return one.value;
@@ -43,12 +43,12 @@ Real total(model::Model& model, const std::string& what) {
 struct Rock {
   std::string cell, scheme;
   int n;
-  Real most;  ///< error
+  Real most;  ///< largest error
 };
 
-/// Thiem (1906): p - p_w = Q mu/(2 pi k h) ln(r/r_w), here with p_w = 0 and Q mu/(2 pi k h) = 1; the pressure in the
-/// well for the rate Q, and the rate for p_w = 0. In anisotropic rock with the distances of Peaceman (1983). The well
-/// is in the middle of a cell or in an edge.
+/// Thiem (1906): p - p_w = Q mu/(2 pi k h) ln(r/r_w), here with p_w = 0 and Q mu/(2 pi k h) = 1. Tests the pressure in
+/// the well for the rate Q, and the rate for p_w = 0. Anisotropic rock: distances of Peaceman (1983). The well is in
+/// the middle of a cell or on an edge.
 TEST(Wells, ThiemsSolution) {
   for (const auto& [cell, scheme, n, most] : std::vector<Rock>{{"quadrilateral", "tpfa", 21, 1e-3},
                                                                {"quadrilateral", "tpfa", 61, 1e-4},
@@ -65,7 +65,7 @@ TEST(Wells, ThiemsSolution) {
         auto& k = scene.materials.at("rock").permeability;
         k = {base::Expression(ratio), base::Expression(1)};
         if (!flat) k.emplace_back(1);
-        const Real a = std::pow(ratio, 0.25);  // x/a and a y are isotropic
+        const Real a = std::pow(ratio, 0.25);  // isotropic in x/a and a y
         hold_sides(scene,
                    fmt::format("0.5*log((x/{0:.17g})^2+(y*{0:.17g})^2) - log({1:.17g})", a, radius * (a + 1 / a) / 2));
         auto& well = add_well(scene, flat ? std::vector<Real>{0, 0} : std::vector<Real>{0, 0, 0, 0, 0, 1});
@@ -81,7 +81,8 @@ TEST(Wells, ThiemsSolution) {
       }
 }
 
-/// A well across a fracture in the middle of tight rock: radial flow in a square with exact pressures on its rim.
+/// Well across a fracture in the middle of almost impermeable rock: radial flow in a square with exact pressures on
+/// its boundary.
 TEST(Wells, InAFracture) {
   for (const std::string cell : {"tetrahedron", "hexahedron"})
     for (const bool oblique : {false, true}) {
@@ -106,7 +107,7 @@ TEST(Wells, InAFracture) {
     }
 }
 
-/// In 2D what a well on a fracture puts in flows along it, a half to either side: p - p_end = Q l/(2 T).
+/// In 2D, half of the injected fluid flows to each side of the well along the fracture: p - p_end = Q l/(2 T).
 TEST(Wells, OnAFractureIn2D) {
   for (const std::string cell : {"triangle", "quadrilateral"}) {
     auto scene = closed_box(cell, false);
@@ -127,15 +128,14 @@ TEST(Wells, OnAFractureIn2D) {
   }
 }
 
-/// At rest under gravity, of a compressible fluid: the pressure at the first point is that of the rock there, and
-/// nothing flows along a well of two parts through three layers of cells and a fracture, one part in faces between
-/// them.
+/// Compressible fluid at rest under gravity: the pressure at the first point equals that in the rock. Nothing flows
+/// along a well of two parts through three layers of cells and a fracture. One part is on faces between the layers.
 TEST(Wells, AtRestNothingFlows) {
   for (const std::string cell : {"tetrahedron", "hexahedron"}) {
     auto scene = box(cell, 4, "auto");
     scene.flow->density = 0.5;
     scene.flow->compressibility = 2;
-    scene.bulk.gravity = {0, 0, -0.5};  // so 1/e = 1 - (1 - z)/2
+    scene.bulk.gravity = {0, 0, -0.5};  // then 1/e = 1 - (1 - z)/2
     scene.mesh.cells[2] = 4;
     scene.mesh.fractures["plane"] = {{-0.5, -0.5, 0.25}, {0.5, 0.5, 0.25}};
     scene.fractures["plane"].material = "joint";
@@ -156,7 +156,7 @@ TEST(Wells, AtRestNothingFlows) {
   }
 }
 
-/// What a well puts into a closed box is stored there, whatever cells and parts it runs through.
+/// The volume injected by a well into a closed box is stored there, for wells through any cells and of several parts.
 TEST(Wells, PutsInItsRate) {
   auto scene = box("tetrahedron", 4, "auto");
   scene.materials.at("rock").compressibility = 0.4;

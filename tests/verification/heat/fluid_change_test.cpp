@@ -1,4 +1,4 @@
-// A fluid whose density and viscosity change with its temperature.
+// Fluid with temperature-dependent density and viscosity.
 #include "assembly/jacobian_check.hpp"
 #include "physics/heat/water.hpp"
 #include "unit/assembly/dense.hpp"
@@ -7,7 +7,7 @@
 namespace sprekk::tests {
 namespace {
 
-/// rho = rho_0 exp(-a T), mu = mu_0 exp(-b T).
+/// Sets rho = rho_0 exp(-a T), mu = mu_0 exp(-b T).
 void change(model::Scene& scene, Real a, Real b) {
   scene.heat->fluid = "exponential";
   scene.heat->reference_temperature = 0;
@@ -15,7 +15,8 @@ void change(model::Scene& scene, Real a, Real b) {
   scene.heat->viscosity_decay = b;
 }
 
-/// The verification table of IAPWS R12-08 (table 4), and densities of SR1-86 (table 1); the table between its knots.
+/// Compares with the verification table of IAPWS R12-08 (table 4), with densities of SR1-86 (table 1), and between the
+/// knots of the table.
 TEST(Water, IsThatOfItsTables) {
   struct Found {
     Real T, density, viscosity;
@@ -48,8 +49,9 @@ TEST(Water, IsThatOfItsTables) {
   EXPECT_EQ(response.density(700).slope, 0);
 }
 
-/// All equally warm, it is a fluid of that density and viscosity: in rock, in fractures, where they meet and through
-/// what fills them, in wells with a pressure. Volumes are those at reference conditions, and grow by exp(a T).
+/// At uniform temperature, the fluid equals a fluid with the density and viscosity at this temperature: in rock, in
+/// fractures and their intersections, through fillings, and in wells with a pressure. Volumes are at reference
+/// conditions, hence larger by exp(a T).
 TEST(FluidChange, EquallyWarmItIsAnotherFluid) {
   for (const std::string cell : all_cells) {
     std::array<std::unique_ptr<model::Model>, 2> models;
@@ -84,7 +86,8 @@ TEST(FluidChange, EquallyWarmItIsAnotherFluid) {
   }
 }
 
-/// From warm to cold: flow through n cells in series of the viscosities at their centres, exactly; and of second order.
+/// Flow between a cold and a warm side. It equals flow through n cells in series with the viscosities at their
+/// centres, and converges with second order.
 TEST(FluidChange, FlowsByItsViscosity) {
   constexpr Real b = 2;
   for (const std::string cell : {"quadrilateral", "hexahedron", "triangle"}) {
@@ -115,7 +118,7 @@ TEST(FluidChange, FlowsByItsViscosity) {
   }
 }
 
-/// A column whose fluid becomes warmer upwards weighs what its cells do.
+/// Column of fluid with temperature increasing upwards: the pressure is the weight of the fluid in the cells above.
 TEST(FluidChange, WeighsByItsDensity) {
   constexpr Real a = 0.5, weight = 6;
   for (const std::string cell : all_cells) {
@@ -154,7 +157,7 @@ TEST(FluidChange, WeighsByItsDensity) {
   }
 }
 
-/// What pores and a fracture hold stays there: (phi + c_phi p) exp(c p - a T) = phi in rigid rock.
+/// The mass in pores and a fracture is constant: (phi + c_phi p) exp(c p - a T) = phi in rigid rock.
 TEST(FluidChange, KeepsItsMass) {
   constexpr Real phi = 0.2, c = 0.3, c_phi = 0.1, a = 0.5;
   for (const std::string cell : all_cells) {
@@ -177,7 +180,7 @@ TEST(FluidChange, KeepsItsMass) {
   }
 }
 
-/// With gravity, walls, fractures that move or not, and wells of both kinds.
+/// With gravity, fillings, rigid and deformable fractures, and both kinds of wells.
 TEST(FluidChange, JacobianIsItsDerivative) {
   for (const std::string cell : {"triangle", "hexahedron"})
     for (const bool deforms : {false, true}) {
@@ -226,7 +229,7 @@ TEST(FluidChange, JacobianIsItsDerivative) {
       test::randomize(x, 0.3, 2);
       int checked = 0;
       for (const auto& e : assembly::check_jacobian(system, x, 1e-6)) {
-        if (e.module.find("jump") != std::string::npos) continue;  // has kinks, and a suite of its own
+        if (e.module.find("jump") != std::string::npos) continue;  // not differentiable everywhere; tested elsewhere
         ++checked;
         EXPECT_LE(e.error, 1e-5) << cell << ": " << e.module << ": " << e.row << ", " << e.column;
       }
@@ -235,8 +238,8 @@ TEST(FluidChange, JacobianIsItsDerivative) {
 }
 
 /// Horton and Rogers (1945), Lapwood (1948): fluid heated from below, in a square of height H with closed sides. The
-/// perturbation cos(pi x) sin(pi z) of T = 1 - z grows at Ra/2 - 2 pi^2 in kappa/H^2. What implicit Euler makes of a
-/// rate s in a step is 1/(1 - s dt), so that only the mesh matters, which is of second order.
+/// perturbation cos(pi x) sin(pi z) of T = 1 - z grows with the rate Ra/2 - 2 pi^2 in kappa/H^2. Implicit Euler
+/// amplifies a rate s by 1/(1 - s dt) per step. The measured rate has therefore only the mesh error, of second order.
 void grows_at(const std::string& place, Real Ra) {
   constexpr Real small = 1e-3, a = 1e-4, dt = 0.001;
   const Real exact = Ra / 2 - 2 * M_PI * M_PI;

@@ -1,11 +1,11 @@
-// Heat in fractures, and carried by a fluid, against exact solutions.
+// Heat in fractures and advected heat, compared with exact solutions.
 #include "warm_boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// A block of 10 m, k = 2.5 W/(m K), with a joint of 5 mm, 0.6 W/(m K), across the flow of heat under 10 K:
-/// q = 10/(L/k + a/k_f).
+/// Block of 10 m, k = 2.5 W/(m K), with a filled joint of 5 mm, 0.6 W/(m K), across the heat flow under 10 K: q =
+/// 10/(L/k + a/k_f).
 TEST(HeatInFractures, AFilledJointIsAResistanceInSeries) {
   constexpr Real q = 10 / (10 / 2.5 + 5e-3 / 0.6);
   for (const std::string cell : all_cells) {
@@ -30,7 +30,8 @@ TEST(HeatInFractures, AFilledJointIsAResistanceInSeries) {
   }
 }
 
-/// At the intersection of two fractures 2 parts at 20 K and 1 at 80 K come together, and leave as warm as they mix.
+/// At the intersection of two fractures, 2 parts of fluid at 20 K mix with 1 part at 80 K and leave with the mixing
+/// temperature.
 TEST(HeatInFractures, MixesWhereTheyMeet) {
   for (const std::string cell : all_cells)
     for (const auto& [out, other] : {std::pair("east", "north"), {"north", "east"}}) {
@@ -53,12 +54,12 @@ TEST(HeatInFractures, MixesWhereTheyMeet) {
         return Vector3{x[in_a ? 0 : 1] > 0.5 ? 40.0 : in_a ? 20.0 : 80.0};
       };
       EXPECT_LT(error(model, "fracture temperature", T), 1e-5)
-          << cell << " " << out;  // conduction is 1e-8 of what flows
+          << cell << " " << out;  // conduction is 1e-8 of advection
     }
 }
 
-/// Steady flow with conduction, T(0) = 0, T(1) = 1: T = (exp(Pe x) - 1)/(exp(Pe) - 1). Of first order at Pe = 10, and
-/// between 0 and 1 and rising at Pe = 1000, where the flows of heat are those of two points.
+/// Steady advection and conduction, T(0) = 0, T(1) = 1: T = (exp(Pe x) - 1)/(exp(Pe) - 1). Convergence with first
+/// order at Pe = 10. At Pe = 1000, on cells with two-point fluxes, T is monotonic and between 0 and 1.
 TEST(HeatInRock, IsCarriedWithTheFluid) {
   for (const std::string cell : {"quadrilateral", "hexahedron", "triangle"}) {
     std::vector<Real> errors;
@@ -93,8 +94,8 @@ TEST(HeatInRock, IsCarriedWithTheFluid) {
   }
 }
 
-/// The scene of injection into a network whose fractures slide and open, with heat: all as warm as the water is, stays
-/// so, to rounding.
+/// Injection into a network of slipping and opening fractures, with water at the temperature of the rock: temperatures
+/// stay constant, up to round-off.
 TEST(HeatInFractures, NothingChangesWhereAllIsEquallyWarm) {
   auto scene = read_scene("poro/injection_2d.xml", {"Mesh.cells={20, 20}"});
   warm(scene, 350, 2.5, 2.2e6, 4.2e6);
@@ -107,8 +108,8 @@ TEST(HeatInFractures, NothingChangesWhereAllIsEquallyWarm) {
   EXPECT_LT(error(model, "fracture temperature", same), 1e-9);
 }
 
-/// A joint between rocks that a fluid does not enter, its lid moved by `lid` m: warmer fluid streams in from both ends,
-/// and out again.
+/// Returns a joint between impermeable rocks, with the displacement `lid` (m) of the upper rock. Warmer fluid enters
+/// through both ends and leaves again.
 model::Scene pulled_joint(const std::string& cell, int n, Real rock_capacity, Real fluid_capacity,
                           const std::string& lid) {
   auto scene = closed_box(cell, false, n);
@@ -137,7 +138,7 @@ model::Scene pulled_joint(const std::string& cell, int n, Real rock_capacity, Re
   return scene;
 }
 
-/// Heat in rock and fluid, over that at 0 K. Collective.
+/// Returns the heat in rock and fluid, relative to 0 K. Collective.
 Real heat_content(model::Model& model, Real rock_capacity, Real fluid_capacity) {
   const auto& mesh = model.mesh();
   const auto T = model.output("temperature").values, T_f = model.output("fracture temperature").values,
@@ -151,7 +152,8 @@ Real heat_content(model::Model& model, Real rock_capacity, Real fluid_capacity) 
   return all;
 }
 
-/// What comes in through the ends in the step that ends at t: conducted, or warmer than the end, and with the fluid.
+/// Returns the heat that enters through the ends in the step that ends at t: by conduction, by temperature difference,
+/// and with the fluid.
 Real heat_that_enters(model::Model& model, Real t, Real dt, Real fluid_capacity) {
   Real sum = 0;
   for (const auto& reaction : model.system().reactions(model.state())) {
@@ -161,9 +163,8 @@ Real heat_that_enters(model::Model& model, Real t, Real dt, Real fluid_capacity)
   return sum;
 }
 
-/// The joint is pulled apart, tenfold and back to half. What comes in as heat is what rock and fluid gain, step by
-/// step, by the rates of either scheme: BDF2 counts 3/2 of what it gains less 1/2 of what the step before did, here
-/// from the third step on.
+/// The joint opens tenfold and closes to half. In each step, the inflow of heat equals the gain of rock and fluid, by
+/// the rates of the time scheme. BDF2 counts 3/2 of the gain minus 1/2 of the previous gain, here from the third step.
 TEST(HeatInFractures, IsInBalanceWhileAperturesChange) {
   constexpr Real c = 4.2e6, rc = 2.2e6;
   for (const auto& [cell, scheme] :
@@ -188,8 +189,8 @@ TEST(HeatInFractures, IsInBalanceWhileAperturesChange) {
   }
 }
 
-/// It breathes a hundred times in a thousand steps: nothing adds up. What is in it at the end is what was there and
-/// has come in, to 1e-12 of all that has come in or gone out. On several ranks the last of the cases.
+/// The joint opens and closes a hundred times in a thousand steps without accumulation of errors. The final heat
+/// equals initial heat plus inflow, to 1e-12 of the sum of absolute flows. Several ranks run only the last case.
 TEST(HeatInFractures, IsInBalanceOverAThousandSteps) {
   constexpr Real c = 4.2e6, rc = 2.2e4, dt = 0.01;
   std::vector<std::pair<const char*, const char*>> cases = {

@@ -1,17 +1,17 @@
-// One problem of rock, fluid and heat with a fracture that slides, turned and in other units: the same answer.
+// A problem of rock, fluid and heat with a slipping fracture: equal results after rotation and in other units.
 #include "warm_boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// In m, Pa, s and K.
+/// Sizes of the units in m, Pa, s and K.
 struct Units {
   const char* name;
   Real length = 1, stress = 1, time = 1, temperature = 1;
 };
 
-/// A block of 10 m, pressed together and sheared, with a fracture through it that slides and opens by its dilation;
-/// warm water at 3 MPa comes in at the west, and leaves at the east; the rest is closed.
+/// Returns a block of 10 m under compression and shear, with a fracture through it that slips and dilates. Warm water
+/// at 3 MPa enters in the west and leaves in the east; other sides are closed.
 model::Scene block(const std::string& cell, const Units& u) {
   auto scene = closed_box(cell, false);
   const int dim = is_flat(cell) ? 2 : 3;
@@ -57,7 +57,7 @@ model::Scene block(const std::string& cell, const Units& u) {
   return scene;
 }
 
-/// Values of owned entities that do not depend on the frame, and the iterations of all steps.
+/// Frame-independent values of owned entities, and the iterations of all steps.
 struct Answer {
   std::map<std::string, std::vector<Real>> values;
   std::vector<int> iterations;
@@ -78,7 +78,7 @@ Answer answer(const model::Scene& scene, const Units& u) {
                                    {"slip", u.length},
                                    {"opening", u.length},
                                    {"thermal stress", u.stress}}) {
-    auto& values = found.values[name];  // also of ranks that own none
+    auto& values = found.values[name];  // creates the entry also on ranks without entities
     for (const Real value : model.output(name).values) values.push_back(value * unit);
   }
   const auto traction = model.output("traction local").values;
@@ -93,7 +93,7 @@ Answer answer(const model::Scene& scene, const Units& u) {
   return found;
 }
 
-/// Each within `tolerance` of the largest, in as many iterations but for one more or less. Collective.
+/// Compares all values, within `tolerance` of the largest; iterations may differ by one. Collective.
 void expect_same(const Answer& one, const Answer& other, Real tolerance) {
   for (const auto& [name, values] : one.values) {
     const auto& others = other.values.at(name);
@@ -107,7 +107,7 @@ void expect_same(const Answer& one, const Answer& other, Real tolerance) {
   for (std::size_t k = 0; k < one.iterations.size(); ++k) EXPECT_NEAR(one.iterations[k], other.iterations[k], 1) << k;
 }
 
-/// It slides and opens, and cools.
+/// Checks that the fracture slips, opens and cools. Collective.
 void expect_change(const Answer& found) {
   Real here[2] = {0, 400}, slip = 0, coldest = 0;
   for (const Real s : found.values.at("slip")) here[0] = std::max(here[0], s);

@@ -1,4 +1,4 @@
-// What sliding fractures dissipate warms them.
+// Frictional heat of slipping fractures.
 #include "../uniform/states.hpp"
 #include "assembly/jacobian_check.hpp"
 #include "base/over_ranks.hpp"
@@ -8,8 +8,8 @@
 namespace sprekk::tests {
 namespace {
 
-/// The block of regimes_2d or 3d between tied sides: pressed by 0.2 m, and moved along by 0.3 m per second from t = 1
-/// on.
+/// Returns the block of regimes_2d or 3d between tied sides: compressed by 0.2 m, and sheared by 0.3 m per second from
+/// t = 1.
 model::Scene sliding_block(int dim, Real dilation_angle, const std::vector<std::string>& law = {}) {
   auto scene = read_scene(fmt::format("verification/regimes_{}d.xml", dim), law);
   tie_sides(scene);
@@ -26,7 +26,7 @@ model::Scene sliding_block(int dim, Real dilation_angle, const std::vector<std::
   return scene;
 }
 
-/// What rock has stored over all ranks.
+/// Returns the heat stored in the rock, over all ranks. Collective.
 Real heat_of(model::Model& model) {
   const auto T = model.output("temperature").values;
   const auto volumes = assembly::cell_volumes(model.mesh());
@@ -35,7 +35,7 @@ Real heat_of(model::Model& model) {
   return base::sum_over_ranks(*model.mesh().comm, here);
 }
 
-/// Work of the traction on what was added to the plastic jump since `plastic`, which becomes the present one.
+/// Returns the work of the traction on the change of the plastic jump since `plastic`, and updates `plastic`.
 Real work_on(model::Model& model, std::vector<Real>& plastic) {
   const auto now = model.output("plastic jump local").values, traction = model.output("traction local").values;
   Real here = 0;
@@ -47,8 +47,8 @@ Real work_on(model::Model& model, std::vector<Real>& plastic) {
   return base::sum_over_ranks(*model.mesh().comm, here);
 }
 
-/// Without loss of heat: what the block gains in each step is the work of the traction on the plastic jump, dilation
-/// included, and without that mu N times the slip.
+/// Without loss of heat: the gain in each step is the work of the traction on the plastic jump, including dilation.
+/// Without dilation it is mu N times the slip.
 TEST(HeatOfFriction, IsWhatSlidingDissipates) {
   for (const int dim : {2, 3})
     for (const Real angle : {0.0, 10.0}) {
@@ -80,7 +80,7 @@ TEST(HeatOfFriction, IsWhatSlidingDissipates) {
     }
 }
 
-/// The same where the angle of dilation falls within the step, by slip or by wear.
+/// The gain of heat equals the work also if the dilation angle decreases within the step, by slip or wear.
 TEST(HeatOfFriction, FollowsWhatSlipDoesToTheJoint) {
   const std::string joint = "Materials.joint.";
   for (const std::vector<std::string>& law : std::vector<std::vector<std::string>>{
@@ -103,7 +103,7 @@ TEST(HeatOfFriction, FollowsWhatSlipDoesToTheJoint) {
     }
 }
 
-/// The rows that take the power; those of the joint have kinks, and a suite of their own.
+/// Tests the rows with the frictional power; rows of the joint are not differentiable everywhere and tested elsewhere.
 TEST(HeatOfFriction, JacobianIsItsDerivative) {
   for (const int dim : {2, 3}) {
     model::Model model(sliding_block(dim, 10), Tpetra::getDefaultComm());

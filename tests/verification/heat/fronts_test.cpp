@@ -1,4 +1,4 @@
-// Fronts of heat that move along fractures, or away from them, against exact solutions.
+// Heat fronts along fractures and away from them, compared with exact solutions.
 #include "../uniform/states.hpp"
 #include "base/over_ranks.hpp"
 #include "warm_boxes.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr Real conductivity = 2.5, rock_capacity = 2.2e6, fluid_capacity = 4.2e6;
 
-/// Rock at 0 K around a fracture in the plane y = 0 (3D: z = 0), that conducts across the fracture alone.
+/// Returns rock at 0 K around a fracture in the plane y = 0 (3D: z = 0), with conduction only normal to the fracture.
 model::Scene rock_around_fracture(const std::string& cell, const std::vector<Real>& lower,
                                   const std::vector<Real>& upper, const std::vector<int>& cells, int across) {
   auto scene = closed_box(cell, false);
@@ -27,7 +27,7 @@ model::Scene rock_around_fracture(const std::string& cell, const std::vector<Rea
   return scene;
 }
 
-/// The largest error of the temperature in fractures at these distances along x, after n equal steps until t.
+/// Returns the largest error of the fracture temperature at the given distances along x, after n equal steps to t.
 template <class Exact>
 Real error_of_front(const model::Scene& scene, Real t, int n, const std::vector<Real>& places, const Exact& exact) {
   model::Model model(scene, Tpetra::getDefaultComm());
@@ -41,7 +41,7 @@ Real error_of_front(const model::Scene& scene, Real t, int n, const std::vector<
 }
 
 /// Fluid at 1 K enters a fracture with v = 1e-2 m/s (Lauwerier 1955):
-/// T_f = erfc(A x/sqrt(t - x/v)), A = sqrt(k rho c)/(rho_f c_f b v). Of first order by upwind flow.
+/// T_f = erfc(A x/sqrt(t - x/v)), A = sqrt(k rho c)/(rho_f c_f b v). First order with upwind flow.
 TEST(HeatInFractures, AFractureWarmsTheRock) {
   constexpr Real v = 1e-2, t = 1e6;
   const auto exact = [&](Real x) {
@@ -64,9 +64,9 @@ TEST(HeatInFractures, AFractureWarmsTheRock) {
   }
 }
 
-/// The same with fractures every 10 m, so that the fronts between them meet (Gringarten, Witherspoon and Ohnishi 1975),
-/// after 3e7 s at 50 m: 0.659390165260, by inversion of exp(-(x/v) (s + 2k/(rho_f c_f b) q tanh(q D)))/s,
-/// q = sqrt(s rho c/k), D = 5 m. Alone the fracture would be at 0.47.
+/// Fractures at a spacing of 10 m, so that the fronts between them interact (Gringarten, Witherspoon and Ohnishi
+/// 1975). At 3e7 s and 50 m: 0.659390165260, by inversion of exp(-(x/v) (s + 2k/(rho_f c_f b) q tanh(q D)))/s, q =
+/// sqrt(s rho c/k), D = 5 m. A single fracture has 0.47.
 TEST(HeatInFractures, ParallelFracturesWarmTheRockBetweenThem) {
   const auto exact = [](Real) { return 0.659390165260; };
   for (const std::string cell : {"quadrilateral", "hexahedron"}) {
@@ -77,7 +77,7 @@ TEST(HeatInFractures, ParallelFracturesWarmTheRockBetweenThem) {
       inject(scene, "west", "a", aperture * 1e-2);
       hold(scene, "east", "0", "a");
       hold_temperature(scene, "west", "1", "a");
-      // of the two faces beside the place
+      // Mean of the two faces adjacent to x = 50 m.
       const Real h = 60.0 / (6 * n);
       model::Model model(scene, Tpetra::getDefaultComm());
       for (int step = 1; step <= 3 * n; ++step) ASSERT_TRUE(model.step_to(step * 3e7 / (3 * n)).converged);
@@ -91,8 +91,9 @@ TEST(HeatInFractures, ParallelFracturesWarmTheRockBetweenThem) {
   }
 }
 
-/// Fluid at 1 K spreads from a well into a horizontal fracture, 1e-3 m^3/s (Lauwerier's problem in radial flow), after
-/// 1e7 s: T_f = erfc(pi r^2 sqrt(k rho c)/(rho_f c_f Q sqrt(t - pi r^2 b/Q))), 0.753655784467 at 20 m. A quarter.
+/// Fluid at 1 K flows radially from a well into a horizontal fracture, 1e-3 m^3/s (Lauwerier's problem, radial). At
+/// 1e7 s: T_f = erfc(pi r^2 sqrt(k rho c)/(rho_f c_f Q sqrt(t - pi r^2 b/Q))), 0.753655784467 at 20 m. A quarter of
+/// the plane.
 TEST(HeatInFractures, AWellWarmsTheRock) {
   constexpr Real Q = 1e-3, t = 1e7;
   const auto exact = [&](Real r) {
@@ -129,9 +130,9 @@ TEST(HeatInFractures, AWellWarmsTheRock) {
   EXPECT_GT(std::log2(errors[0] / errors[1]), 0.6) << errors[0] << ", " << errors[1];
 }
 
-/// A column of 40 m with a joint at mid-height, sides on rollers, its top moved by (2, -2) mm; then the joint is cooled
-/// by 50 K, and the fronts that move away from it, 4 dT sqrt(kappa t/pi) in sum over the height, unload it: it slips at
-/// 2.24e5 s and opens at 1.396e6 s. In 2D the exact temperature is given.
+/// Column of 40 m with a joint at mid-height and sides on rollers; displacement (2, -2) mm of its top. Then the joint
+/// is cooled by 50 K. The cold fronts, with the integral 4 dT sqrt(kappa t/pi) over the height, reduce its
+/// compression: it slips at 2.24e5 s and opens at 1.396e6 s. In 2D the exact temperature is prescribed.
 TEST(ThermalStress, AColdFrontMakesAJointSlipAndOpen) {
   struct State {
     Real t, N, u_p;
@@ -165,7 +166,7 @@ TEST(ThermalStress, AColdFrontMakesAJointSlipAndOpen) {
       joint.normal_stiffness = Expression(2e10);
       joint.tangential_stiffness = Expression(5e9);
       joint.initial_aperture = Expression(1e-3);
-      joint.filling_conductivity = Expression(1e12);  // of one temperature
+      joint.filling_conductivity = Expression(1e12);  // both sides have equal temperatures
       warm(scene, 300, 2.2, 2.2e6, 0);
       auto& moved = scene.boundary_conditions.at("moved").displacement;
       moved.assign(dim, Expression(0));
@@ -184,7 +185,7 @@ TEST(ThermalStress, AColdFrontMakesAJointSlipAndOpen) {
       Real before = 0, worst = 0;
       for (const auto& s : states) {
         const int steps = n / 4;
-        for (int k = 1; k <= steps; ++k) {  // of equal ways of the front
+        for (int k = 1; k <= steps; ++k) {  // equal advances of the front
           const Real root = std::sqrt(before) + (std::sqrt(s.t) - std::sqrt(before)) * k / steps;
           ASSERT_TRUE(model.step_to(k == steps ? s.t : root * root).converged) << dim << " " << s.t;
         }

@@ -1,4 +1,4 @@
-// Conduction of heat, against exact solutions of the equations and of the scheme.
+// Heat conduction, compared with exact solutions of the equations and of the discretisation.
 #include "../scenes.hpp"
 #include "assembly/jacobian_check.hpp"
 #include "unit/assembly/dense.hpp"
@@ -10,7 +10,7 @@ constexpr const char* all_cells[] = {"triangle", "quadrilateral", "tetrahedron",
 
 bool is_flat(const std::string& cell) { return cell == "triangle" || cell == "quadrilateral"; }
 
-/// The unit square or cube with n cells along each edge, insulated.
+/// Returns the insulated unit square or cube with n cells along each edge.
 model::Scene box(const std::string& cell, int n) {
   model::Scene scene;
   const int dim = is_flat(cell) ? 2 : 3;
@@ -38,7 +38,7 @@ void hold_side(model::Scene& scene, const std::string& side, const std::string& 
   scene.boundary_conditions[side].temperature = base::Expression(temperature);
 }
 
-/// Roots of the mean squares over the cells of what temperature and heat flux are off. Collective.
+/// Returns the root mean squares, over cells, of the errors of temperature and heat flux. Collective.
 template <class Temperature, class Flux>
 std::array<Real, 2> errors(model::Model& model, const Temperature& T, const Flux& q) {
   const auto temperature = model.output("temperature").values, flux = model.output("heat flux").values;
@@ -55,7 +55,7 @@ std::array<Real, 2> errors(model::Model& model, const Temperature& T, const Flux
   return all;
 }
 
-/// In anisotropic rock, by temperatures on all sides but the east, where the flux is given.
+/// Anisotropic rock with prescribed temperatures on all sides except a prescribed flux in the east.
 TEST(Heat, ConstantGradientIsExact) {
   const Vector3 gradient = {0.7, -0.3, 0.45};
   const Matrix3 K = {{{4, 1, 0.6}, {1, 2, 0.4}, {0.6, 0.4, 3}}};
@@ -81,7 +81,7 @@ TEST(Heat, ConstantGradientIsExact) {
   }
 }
 
-/// A capacity that is an expression of the place, and the same by regions.
+/// A heat capacity by an expression of the coordinates equals one by regions.
 TEST(Heat, CapacityMayDependOnThePlace) {
   for (const std::string cell : all_cells) {
     std::vector<std::vector<Real>> found;
@@ -135,12 +135,12 @@ TEST(Heat, TransferIsAResistanceInSeries) {
   }
 }
 
-/// T = product of sin(pi x_i), steady under the source 2 dim pi^2 T.
+/// T = product of sin(pi x_i), steady with the source 2 dim pi^2 T.
 TEST(Heat, ErrorsShrinkWithTheCells) {
   for (const std::string cell : all_cells) {
     const int dim = is_flat(cell) ? 2 : 3;
     const std::string bump = dim == 2 ? "sin(pi*x)*sin(pi*y)" : "sin(pi*x)*sin(pi*y)*sin(pi*z)";
-    const auto product = [&](const Vector3& x, int along) {  // or -2 times its derivative
+    const auto product = [&](const Vector3& x, int along) {  // product, or -2 times its derivative
       Real value = along < 0 ? 1 : -2;
       for (int i = 0; i < dim; ++i) value *= i == along ? M_PI * std::cos(M_PI * x[i]) : std::sin(M_PI * x[i]);
       return value;
@@ -164,7 +164,7 @@ TEST(Heat, ErrorsShrinkWithTheCells) {
   }
 }
 
-/// Insulated rock under the source cos(t) has T = T_0 + sin(t)/(rho c), everywhere: only the scheme in time is off.
+/// Insulated rock with the source cos(t): T = T_0 + sin(t)/(rho c), uniform, hence only with time error.
 TEST(Heat, OrderInTime) {
   for (const std::string cell : {"triangle", "hexahedron"})
     for (const auto& [scheme, order] : {std::pair("implicit Euler", 1), std::pair("BDF2", 2)}) {
@@ -184,7 +184,7 @@ TEST(Heat, OrderInTime) {
     }
 }
 
-/// What flows in at the sides is what the rock gains.
+/// The inflow at the sides equals the gain of the rock.
 TEST(Heat, IsInBalance) {
   for (const std::string cell : all_cells) {
     auto scene = box(cell, 3);
@@ -202,7 +202,7 @@ TEST(Heat, IsInBalance) {
       const auto T = model.output("temperature").values;
       for (LocalIndex c = 0; c < model.mesh().n_owned_cells; ++c) here += 3 * T[c];
       Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 1, &here, &all);
-      return all / static_cast<Real>(model.mesh().n_global_cells);  // cells of one size
+      return all / static_cast<Real>(model.mesh().n_global_cells);  // cells of equal size
     };
     ASSERT_TRUE(model.step_to(0.1).converged) << cell;
     const Real before = content();
@@ -234,7 +234,7 @@ TEST(Heat, AHalfSpaceCools) {
   }
 }
 
-/// Rock that deforms under its weight is as it is without heat, and as warm as rigid rock.
+/// Deformable rock under body force: displacements are those without heat, temperatures those of rigid rock.
 TEST(Heat, GoesBesideMechanics) {
   for (const std::string cell : all_cells) {
     auto both = box(cell, 3);

@@ -1,14 +1,14 @@
-// A point that gives off heat in rock whose fluid cannot leave fast enough, against the exact solution.
+// Point heat source in rock whose fluid drains slowly, compared with the exact solution.
 #include "base/over_ranks.hpp"
 #include "warm_boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Booker and Savvidou (1985): Q = 100 W from t = 0 on at the origin of a body without bounds. With
-/// g = Q/(4 pi k r), a = sqrt(4 kappa t), b = sqrt(4 c t), without advection,
-///   T = g erfc(r/a),   p = P g (erfc(r/a) - erfc(r/b)),   P = X/(1 - c/kappa),
-/// and the displacement has no curl, so that M div u = alpha p + beta T, beta = 3 K alpha_T:
+/// Booker and Savvidou (1985): Q = 100 W from t = 0 at the origin of an infinite body. With g = Q/(4 pi k r), a =
+/// sqrt(4 kappa t), b = sqrt(4 c t), without advection,
+///   T = g erfc(r/a),   p = P g (erfc(r/a) - erfc(r/b)),   P = X/(1 - c/kappa).
+/// The displacement has no curl, hence M div u = alpha p + beta T, beta = 3 K alpha_T:
 ///   u_r = Q/(4 pi k M r^2) ((alpha P + beta) I(a) - alpha P I(b)),
 ///   I(a) = integral of r erfc(r/a) from 0 to r = r^2/2 erfc(r/a) + a^2/4 erf(r/a) - a r/(2 sqrt(pi)) exp(-r^2/a^2).
 namespace source {
@@ -31,7 +31,7 @@ Real u(Real r) {
          ((alpha * P + K * beta_s) * I(std::sqrt(4 * kappa * t)) - alpha * P * I(std::sqrt(4 * c * t)));
 }
 
-/// The same as expressions of x, y, z, t.
+/// Same solution as expressions of x, y, z, t.
 const std::string r = "sqrt(x^2+y^2+z^2)";
 std::string width(Real diffusivity) { return fmt::format("sqrt({:.17g}*max(t,1))", 4 * diffusivity); }
 std::string falls(Real diffusivity) { return fmt::format("erfc({}/{})", r, width(diffusivity)); }
@@ -48,7 +48,7 @@ std::string displacement(const std::string& x) {
 
 }  // namespace source
 
-/// A cube beside the point, with exact values on its sides.
+/// Returns a cube next to the point, with exact values on its sides.
 model::Scene beside_the_source(const std::string& cell, int n) {
   auto scene = closed_box(cell, false, n);
   scene.mesh.fractures.clear();
@@ -79,7 +79,7 @@ model::Scene beside_the_source(const std::string& cell, int n) {
   return scene;
 }
 
-/// Roots of mean squares over cells, of u over nodes, relative to those of the exact values: T, p, u. Collective.
+/// Returns root mean square errors relative to the exact values: T and p over cells, u over nodes. Collective.
 std::array<Real, 3> errors(model::Model& model) {
   const auto& mesh = model.mesh();
   std::vector<Real> sums(6, 0);

@@ -1,11 +1,11 @@
-// Advection of second order, against exact solutions, bounds and balances.
+// Second-order advection, compared with exact solutions, bounds and balances.
 #include "warm_boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
-/// Flow with unit capacities along x from 0 to `length` at velocity v, with the conductivity D: through rock, n cells
-/// long, or along a fracture in rock that neither conducts nor stores.
+/// Returns flow with unit capacities along x from 0 to `length` with velocity v and conductivity D. The flow is
+/// through rock, n cells long, or along a fracture in rock without conduction and storage.
 model::Scene stream(const std::string& cell, bool in_fracture, int n, Real length, Real v, Real D) {
   auto scene = closed_box(cell, in_fracture, 2);
   const bool flat = is_flat(cell);
@@ -41,7 +41,7 @@ model::Scene stream(const std::string& cell, bool in_fracture, int n, Real lengt
   return scene;
 }
 
-/// The mean over cells, or faces of a fracture, of what the temperature is off. Collective.
+/// Returns the mean error of the temperature over cells, or over faces of a fracture. Collective.
 template <class Exact>
 Real mean_error(model::Model& model, const std::string& output, const Exact& exact) {
   const auto T = model.output(output).values;
@@ -64,8 +64,8 @@ std::array<Real, 2> range(model::Model& model, const std::string& output) {
   return {all[0], -all[1]};
 }
 
-/// Ogata and Banks (1961): a front that spreads while it is carried along; in steps that fall with the square of cells,
-/// for conduction stays one of first order in time.
+/// Ogata and Banks (1961): a front under advection and conduction. The steps decrease with the square of the cell
+/// size, because conduction is first order in time.
 TEST(SecondOrder, AFrontIsCarriedAlong) {
   constexpr Real D = 3e-6, v = 8e-6, t = 1e6;
   const auto exact = [](Real x) {
@@ -82,7 +82,7 @@ TEST(SecondOrder, AFrontIsCarriedAlong) {
       auto scene = stream(cell, in_fracture, std::abs(n), 25, v, D);
       if (n < 0) scene.heat->advection = "upwind";
       model::Model model(scene, Tpetra::getDefaultComm());
-      const int steps = n * n / 16;  // 0.32 cells each, then 0.16
+      const int steps = n * n / 16;  // 0.32 cells per step, then 0.16
       for (int k = 1; k <= steps; ++k) ASSERT_TRUE(model.step_to(k * t / steps).converged) << cell;
       const Real found = mean_error(model, output, exact);
       if (n > 0)
@@ -95,7 +95,7 @@ TEST(SecondOrder, AFrontIsCarriedAlong) {
   }
 }
 
-/// Steady flow with conduction against a warm outlet, T = (exp(Pe x) - 1)/(exp(Pe) - 1) at Pe = 10.
+/// Steady advection and conduction with a warm outlet, T = (exp(Pe x) - 1)/(exp(Pe) - 1) at Pe = 10.
 TEST(SecondOrder, SettlesToTheSteadyState) {
   constexpr Real Pe = 10;
   const auto exact = [](Real x) { return std::expm1(Pe * x) / std::expm1(Pe); };
@@ -116,8 +116,8 @@ TEST(SecondOrder, SettlesToTheSteadyState) {
   }
 }
 
-/// At a Peclet number of 1000 nothing leaves the range of what flows in and was there: a step, and what was warm at the
-/// start, which keeps its energy while it is inside.
+/// At a Peclet number of 1000, temperatures stay within the range of inflow and initial values, for an inflow step and
+/// for an initial pulse. The pulse conserves its energy while inside.
 TEST(SecondOrder, KeepsBoundsAndEnergy) {
   for (const std::string cell : {"quadrilateral", "hexahedron"})
     for (const bool wave : {false, true}) {
@@ -143,11 +143,11 @@ TEST(SecondOrder, KeepsBoundsAndEnergy) {
       Real here = 0, all = 0;
       for (const Real each : T) here += each / n;
       Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 1, &here, &all);
-      EXPECT_NEAR(all, 0.2, 1e-6) << cell;  // less what upwind flow has let out
+      EXPECT_NEAR(all, 0.2, 1e-6) << cell;  // minus the outflow of the upwind scheme
     }
 }
 
-/// Warm fluid through fractures that meet: what came in and has not gone out is there, in bounds, step by step.
+/// Warm fluid through intersecting fractures: heat balance and bounds in each step.
 TEST(SecondOrder, IsInBalanceWhereFracturesMeet) {
   for (const std::string cell : {"quadrilateral", "hexahedron"}) {
     auto scene = closed_box(cell, true, 10);

@@ -1,4 +1,4 @@
-// What heat does to stresses and pressures, against exact solutions.
+// Thermal stresses and pressures, compared with exact solutions.
 #include "../uniform/states.hpp"
 #include "assembly/jacobian_check.hpp"
 #include "unit/assembly/dense.hpp"
@@ -7,15 +7,15 @@
 namespace sprekk::tests {
 namespace {
 
-/// The part of a vector in the frame of a face that lies in the face.
+/// Returns the tangential part of a vector in the frame of a face.
 Vector3 tangential(const assembly::OutputField& field, LocalIndex f) {
   Vector3 v{};
   for (int k = 1; k < field.n_components; ++k) v[k - 1] = field.values[f * field.n_components + k];
   return v;
 }
 
-/// A column of 10 m with a horizontal joint, its top moved by (2, -2) mm; then all of it becomes colder: it slips at
-/// -6.48 K and opens at -13.3 K. N/k_n + V(N) = g_0 - d_n + beta_T dT/k_n, beta_T = (3 lambda + 2G) alpha_T.
+/// Column of 10 m with a horizontal joint and the displacement (2, -2) mm of its top, then uniform cooling. The joint
+/// slips at -6.48 K and opens at -13.3 K. N/k_n + V(N) = g_0 - d_n + beta_T dT/k_n, beta_T = (3 lambda + 2G) alpha_T.
 TEST(ThermalStress, CoolingMakesAJointSlipAndOpen) {
   struct State {
     Real dT, N, shear, u_p, opening;
@@ -67,8 +67,8 @@ TEST(ThermalStress, CoolingMakesAJointSlipAndOpen) {
     }
 }
 
-/// The half-space of xml/heat/cooling_2d.xml that cannot shrink along its surface:
-/// stress along it E alpha_T/(1 - nu) 50 K erfc(x/sqrt(4 kappa t)); the surface moves by
+/// Half-space of xml/heat/cooling_2d.xml, without strain along its surface.
+/// Stress along the surface: E alpha_T/(1 - nu) 50 K erfc(x/sqrt(4 kappa t)). Displacement of the surface:
 /// (1 + nu)/(1 - nu) alpha_T 50 K sqrt(4 kappa t/pi).
 TEST(ThermalStress, OfAHalfSpaceThatCools) {
   for (const int dim : {2, 3}) {
@@ -105,14 +105,14 @@ TEST(ThermalStress, OfAHalfSpaceThatCools) {
   }
 }
 
-/// A closed box that becomes warmer by 1 K: rigid beta_m/S; that may widen along one axis
-/// (beta_m - alpha K beta_s/M)/(S + alpha^2/M); that may widen freely (beta_m - alpha beta_s)/(S + alpha^2/K),
-/// beta_m = phi beta_f + (alpha - phi) beta_s, M = K + 4G/3; in plane strain the third axis is held.
+/// Pressure increase per kelvin in a closed box. Rigid: beta_m/S; with free strain along one axis: (beta_m - alpha K
+/// beta_s/M)/(S + alpha^2/M); with free strain: (beta_m - alpha beta_s)/(S + alpha^2/K). Here beta_m = phi beta_f +
+/// (alpha - phi) beta_s, M = K + 4G/3; plane strain constrains the third axis.
 TEST(ThermalExpansion, OfAFluidThatCannotLeave) {
   constexpr Real alpha = 0.8, phi = 0.1, K = 20e9, G = 12e9, beta_s = 3e-5, beta_f = 3e-4;
   constexpr Real S = (alpha - phi) / 100e9 + phi / 2.2e9, beta_m = phi * beta_f + (alpha - phi) * beta_s,
                  M = K + 4 * G / 3;
-  constexpr Real plane = K + G / 3, dT = 0.01;  // stiffness of plane strain against equal strains; warmer by
+  constexpr Real plane = K + G / 3, dT = 0.01;  // stiffness of plane strain for equal strains; temperature increase
   struct Case {
     int free;
     Real rise;
@@ -160,9 +160,9 @@ TEST(ThermalExpansion, OfAFluidThatCannotLeave) {
   }
 }
 
-/// Thermal consolidation of a column (Bai 2005; 7 m, drained and heated by 50 K at its top, load 1 Pa): pressures at
-/// the bottom and settlements at three times, from the series. Without the expansion of the pores' walls the pressure
-/// at 1000 s were 44 % lower.
+/// Thermal consolidation of a column (Bai 2005; 7 m, drained and heated by 50 K at its top, load 1 Pa). The reference
+/// is the series for pressures at the bottom and settlements at three times. Without thermal expansion of the pore
+/// walls, the pressure at 1000 s would be 44 % lower.
 TEST(ThermalExpansion, OfAColumnThatConsolidates) {
   for (const std::string cell : {"quadrilateral", "hexahedron"}) {
     auto scene = read_scene(is_flat(cell) ? "verification/terzaghi_2d.xml" : "verification/terzaghi_3d.xml");
@@ -212,7 +212,7 @@ TEST(ThermalExpansion, OfAColumnThatConsolidates) {
   }
 }
 
-/// The scene of injection, with cold water and all that couples, two steps into it.
+/// The scene of injection, with cold water and all couplings, after two steps.
 TEST(ThermoPoroelasticity, JacobianIsItsDerivative) {
   for (const std::string cell : {"triangle", "hexahedron"})
     for (const bool tips : {false, true}) {
@@ -256,7 +256,7 @@ TEST(ThermoPoroelasticity, JacobianIsItsDerivative) {
       test::randomize(x, 0.3, 2);
       int checked = 0;
       for (const auto& e : assembly::check_jacobian(system, x, 1e-6)) {
-        if (e.module.find("jump") != std::string::npos) continue;  // has kinks, and a suite of its own
+        if (e.module.find("jump") != std::string::npos) continue;  // not differentiable everywhere; tested elsewhere
         ++checked;
         EXPECT_LE(e.error, 1e-5) << cell << ": " << e.module << ": " << e.row << ", " << e.column;
       }
@@ -264,8 +264,8 @@ TEST(ThermoPoroelasticity, JacobianIsItsDerivative) {
     }
 }
 
-/// xml/thm: a fault beside a wall that is cooled sticks for a year and slides afterwards; a producer draws water that
-/// becomes colder from year to year, between that which goes in and the rock; a gallery warms its rock.
+/// Scenes of xml/thm: a fault next to a cooled wall sticks for a year and then slips. A producer delivers water that
+/// cools from year to year, between the temperatures of injected water and rock. A gallery heats its rock.
 TEST(ThermoPoroelasticity, ScenesTellWhatTheySay) {
   const auto largest = [](model::Model& model, const std::string& output) {
     Real here = 0, all = 0;

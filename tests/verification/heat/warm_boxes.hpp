@@ -1,4 +1,4 @@
-// Boxes with heat, and what the suites of heat measure in them.
+// Boxes with heat, and quantities that the suites of heat compare.
 #pragma once
 
 #include "../flow/boxes.hpp"
@@ -7,7 +7,7 @@ namespace sprekk::tests {
 
 using base::Expression;
 
-/// Heat of everything at T_0, with the capacity c of the fluid.
+/// Adds heat to a scene: initial temperature T_0, conductivity and capacity of all materials, capacity c of the fluid.
 inline void warm(model::Scene& scene, Real T_0, Real conductivity, Real capacity, Real c) {
   scene.heat.emplace().initial_temperature = Expression(T_0);
   if (scene.flow) scene.heat->fluid_capacity = c;
@@ -26,7 +26,7 @@ inline void hold_temperature(model::Scene& scene, const std::string& side, const
   if (!fracture.empty()) condition.fracture = fracture;
 }
 
-/// A volume per time that enters a fracture of aperture 1 mm and extent 1 at a side.
+/// Prescribes the volumetric inflow `rate` into a fracture at a side (aperture 1 mm, extent 1).
 inline void inject(model::Scene& scene, const std::string& side, const std::string& fracture, Real rate) {
   auto& condition = scene.boundary_conditions[side + " end"];
   condition.boundary = side;

@@ -1,4 +1,4 @@
-// Rock and fractures that a fluid moves, against exact solutions.
+// Poroelastic rock and fractures, compared with exact solutions.
 #include "../flow/boxes.hpp"
 
 namespace sprekk::tests {
@@ -6,8 +6,8 @@ namespace {
 
 constexpr Real G = 3, lambda = 2, biot = 0.7, growth = 0.4;
 
-/// The box of the suites of flow, with fractures that cross; with one more that ends inside. Its sides in the planes
-/// of axes may not move along their normals.
+/// Returns the box of the suites of flow with crossing fractures; with `tips` also a fracture that ends inside. Sides
+/// in coordinate planes have no normal displacement.
 model::Scene deforming_box(const std::string& cell, bool tips = false) {
   auto scene = closed_box(cell);
   const bool flat = is_flat(cell);
@@ -35,7 +35,7 @@ model::Scene deforming_box(const std::string& cell, bool tips = false) {
   return scene;
 }
 
-/// Presses on the other sides.
+/// Adds a pressure load on the other sides.
 void press(model::Scene& scene, Real pressure) {
   const int dim = static_cast<int>(scene.mesh.lower_corner.size());
   const std::vector<std::string> sides = {"east", "north", "top"};
@@ -47,7 +47,7 @@ void press(model::Scene& scene, Real pressure) {
   }
 }
 
-/// Checks that strain, pressure and the traction on fractures are those of a state without gradients.
+/// Checks strain, pressure and the traction on fractures of a state without gradients.
 void expect_uniform(model::Model& model, Real strain, Real p, Real traction, Real tolerance) {
   const int dim = model.mesh().dim();
   const auto u = model.output("displacement");
@@ -60,8 +60,8 @@ void expect_uniform(model::Model& model, Real strain, Real p, Real traction, Rea
   EXPECT_LT(error(model, "traction local", [&](const auto&, const auto&) { return Vector3{traction}; }), tolerance);
 }
 
-/// In a box under an all-round load P_0 that drains to the pressure P on all sides: the strain follows from the
-/// effective stress -P_0 + alpha P, the sides of fractures press on each other with P_0 - P.
+/// Drained box under an all-round load P_0, with the pressure P on all sides. The strain follows from the effective
+/// stress -P_0 + alpha P; the sides of fractures are in contact with the pressure P_0 - P.
 TEST(Poroelasticity, ADrainedBoxFollowsTheEffectiveStress) {
   for (const std::string cell : all_cells)
     for (const bool tips : {false, true})
@@ -79,7 +79,7 @@ TEST(Poroelasticity, ADrainedBoxFollowsTheEffectiveStress) {
       }
 }
 
-/// Porosity and Biot's coefficient that are expressions of the place, and the same by regions.
+/// Porosity and Biot's coefficient by expressions of the coordinates equal those by regions.
 TEST(Poroelasticity, PropertiesMayDependOnThePlace) {
   for (const std::string cell : {"quadrilateral", "tetrahedron"}) {
     std::vector<std::vector<Real>> found;
@@ -108,8 +108,8 @@ TEST(Poroelasticity, PropertiesMayDependOnThePlace) {
   }
 }
 
-/// In a closed box the fluid bears its part of the load, Skempton's: p = P_0 alpha M/(K + alpha^2 M), 1/M the storage
-/// at constant strain. With constant time steps, or a first one of almost nothing.
+/// In a closed box the fluid has the pressure of Skempton, p = P_0 alpha M/(K + alpha^2 M), with the storage 1/M at
+/// constant strain. With constant time steps, or with a very short first step.
 TEST(Poroelasticity, AClosedBoxIsUndrained) {
   for (const std::string cell : all_cells)
     for (const Real first : {1e-9, 1e3}) {
@@ -127,8 +127,8 @@ TEST(Poroelasticity, AClosedBoxIsUndrained) {
     }
 }
 
-/// 1/M = porosity c + growth of pores, whichever of M and the growth is given: of fluid that is injected into a closed
-/// box, by Biot's modulus undrained, with densities that vary, and without growth.
+/// 1/M = porosity c + growth of pores: the results are equal if M or the growth is given, with and without
+/// compressibility and growth.
 TEST(Poroelasticity, BiotModulusIsStorageAtConstantStrain) {
   for (const std::string cell : all_cells)
     for (const Real c : {0.0, 0.3})
@@ -158,8 +158,8 @@ TEST(Poroelasticity, BiotModulusIsStorageAtConstantStrain) {
       }
 }
 
-/// Under gravity, with a total stress and a hydrostatic pressure at the start that balance it, nothing moves: fractures
-/// that cross or end inside press on each other with what the fluid leaves.
+/// Under gravity, with total stress and hydrostatic pressure in equilibrium at the start, nothing moves. Fractures
+/// that cross or end inside have the effective contact pressure.
 TEST(Poroelasticity, WhatIsInBalanceAtTheStartStaysAtRest) {
   for (const std::string cell : all_cells)
     for (const bool tips : {false, true}) {
@@ -206,8 +206,8 @@ TEST(Poroelasticity, WhatIsInBalanceAtTheStartStaysAtRest) {
     }
 }
 
-/// What is put into a fracture of a closed box is found in its pores and in the apertures, with a fluid of constant
-/// density and with one that is compressible; also where the fracture opens.
+/// The volume injected into a fracture of a closed box equals the change in pores and apertures. Cases: constant and
+/// pressure-dependent density; the fracture opens.
 TEST(Poroelasticity, NoFluidIsLost) {
   for (const std::string cell : all_cells)
     for (const Real compressibility : {0.0, 0.05}) {
@@ -223,7 +223,7 @@ TEST(Poroelasticity, NoFluidIsLost) {
       Real here = 0, all = 0;
       const auto pressure = model.output("pressure"), inside = model.output("fracture pressure"),
                  opening = model.output("opening");
-      // of cells and facets: what flows against oscillation between them cancels
+      // Sum over cells and facets; stabilisation fluxes between them cancel.
       for (const char* what : {"volume", "exchange"}) {
         const auto kept = model.field(std::string("poroelastic coupling: ") + what).values;
         const auto content = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), kept);
@@ -251,8 +251,8 @@ TEST(Poroelasticity, NoFluidIsLost) {
     }
 }
 
-/// What rounding leaves of a residual is judged at the state where a step begins, not where an attempt that failed has
-/// ended: with pressures and so densities beyond all measure, every residual would count as rounding.
+/// The rounding level of a residual refers to the state at the beginning of a step, not to the end of a failed
+/// attempt. Such an attempt may have extreme pressures and densities, so that every residual would count as round-off.
 TEST(Poroelasticity, AFailedAttemptDoesNotHideTheResidual) {
   auto scene = deforming_box("triangle", true);
   scene.flow->compressibility = 1;
@@ -279,8 +279,8 @@ TEST(Poroelasticity, AFailedAttemptDoesNotHideTheResidual) {
   EXPECT_NEAR(largest(), before, 1e-9 * before);
 }
 
-/// The flow into a box that is pressed in one short step is the volume that its incompressible fluid leaves: with the
-/// flow against oscillations, which is then large. The rates of a step that is taken back do not stay.
+/// A box with incompressible fluid is loaded in one short step: the inflow is the volume change, including the large
+/// stabilisation flux. After take_back(), the rates of the rejected step are not used.
 TEST(Poroelasticity, InflowsAreThoseOfTheStep) {
   for (const std::string cell : {"triangle", "hexahedron"}) {
     SCOPED_TRACE(cell);
@@ -305,8 +305,8 @@ TEST(Poroelasticity, InflowsAreThoseOfTheStep) {
   }
 }
 
-/// A pressure that is given in all of the rock moves it as one that was found: pressed by P on all sides, the strain is
-/// that of the effective stress alpha p - P, and fractures bear p - P.
+/// A prescribed pressure in all rock deforms the rock like a computed one. Under the load P on all sides, the strain
+/// is that of the effective stress alpha p - P, and fractures have the traction p - P.
 TEST(Poroelasticity, PressureOfARegion) {
   const Real P = 2, p = 1.2;
   for (const std::string cell : all_cells) {

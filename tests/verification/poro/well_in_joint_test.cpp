@@ -1,16 +1,16 @@
-// Wells in joints that are pulled apart: their pressures and rates are those of the present aperture.
+// Wells in opening joints: pressures and rates depend on the present aperture.
 #include "../flow/boxes.hpp"
 
 namespace sprekk::tests {
 namespace {
 
 constexpr Real radius = 0.01, wide = 1e-2, mu = viscosity;
-/// A thousand times that at the start.
+/// Returns the transmissivity of smooth walls. T, for the final aperture, is a thousand times the initial value.
 constexpr Real T_of(Real aperture) { return aperture * aperture * aperture / (12 * mu); }
 constexpr Real T = T_of(wide);
 
-/// Hard rock around the origin with a joint in its middle, `aperture` wide at the start; its north (3D: top) moves in
-/// the first second, until the joint is `wide`.
+/// Returns stiff rock around the origin with a joint in its middle, with the initial aperture `aperture`. The north
+/// side (3D: top) moves in the first second until the aperture is `wide`.
 model::Scene parted_box(const std::string& cell, Real permeability) {
   const bool flat = is_flat(cell);
   auto scene = read_scene(flat ? "flow/source_2d.xml" : "flow/source_3d.xml");
@@ -54,7 +54,7 @@ void hold_rim(model::Scene& scene, const std::string& pressure, bool flat) {
     if (!flat || side == "west" || side == "east") hold(scene, side, pressure);
 }
 
-/// "rate" or another total of the well, two long steps after the start: then nothing is stored any more.
+/// Returns the totals of the well, e.g. "rate", after two long steps, when storage changes vanish.
 std::map<std::string, Real> totals_of(const model::Scene& scene) {
   model::Model model(scene, Tpetra::getDefaultComm());
   for (const Real t : {1e12, 1e14}) EXPECT_TRUE(model.step_to(t).converged);
@@ -64,9 +64,9 @@ std::map<std::string, Real> totals_of(const model::Scene& scene) {
   return found;
 }
 
-/// In 2D what the well puts in flows along the joint, a half to either side: p - p_end = Q (l + r_w)/(2 T); in 3D it
-/// flows radially: p - p_w = Q/(2 pi T) ln(r/r_w), here on the rim. Walls of JRC 48 carry as if they were 6.26 mm
-/// apart.
+/// In 2D, half of the injected fluid flows to each side along the joint: p - p_end = Q (l + r_w)/(2 T). In 3D the flow
+/// is radial: p - p_w = Q/(2 pi T) ln(r/r_w), here with p on the boundary. Rough walls with JRC 48 conduct like an
+/// aperture of 6.26 mm.
 TEST(WellInAJoint, FollowsThePresentAperture) {
   for (const std::string cell : all_cells)
     for (const bool by_rate : {true, false}) {
@@ -89,8 +89,8 @@ TEST(WellInAJoint, FollowsThePresentAperture) {
     }
 }
 
-/// Rock that does not deform, with a fracture that has this aperture from the start, has the same pressures and rates,
-/// in the fracture and in rock beside it that takes a part.
+/// Rigid rock with a fracture of this aperture from the start has equal pressures and rates, also with a well partly
+/// in rock next to the fracture.
 TEST(WellInAJoint, IsLikeOneInAFractureThatWide) {
   for (const std::string cell : all_cells)
     for (const Real compressibility : {0.0, 0.3})
