@@ -1,6 +1,6 @@
-// Preloaded into the programs of tests. A rank of Open MPI that waits yields the processor between looks for messages. Where
-// other programs run, too, it may get the processor back some milliseconds later, each time. After such a yield it sleeps
-// for some microseconds instead, and is back at once.
+// Library preloaded into test programs. A waiting rank of Open MPI yields the processor between checks for messages.
+// When other programs run, the rank may get the processor back only after milliseconds, each time. After such a yield,
+// this library sleeps for some microseconds instead and returns quickly.
 #include <chrono>
 #include <sched.h>
 #include <sys/syscall.h>

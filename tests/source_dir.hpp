@@ -1,12 +1,12 @@
-// Where tests find scenes and meshes.
+// Location of scenes and meshes for tests.
 #pragma once
 
 #include <string>
 
 namespace sprekk::tests {
 
-/// The top of the repository. Only main.cpp is compiled with it, so that compilers' caches know all other sources again
-/// in another copy of the repository.
+/// Returns the top folder of the repository. Only main.cpp depends on the path, so that compiler caches can reuse all
+/// other objects in another copy of the repository.
 std::string source_dir();
 
 }  // namespace sprekk::tests

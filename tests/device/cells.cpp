@@ -9,7 +9,7 @@ namespace {
 using mesh::Shape;
 using physics::FluxScheme;
 
-/// Cells with nodes of their own: a third are affine, of the others of order 2 half are not straight.
+/// Returns cells without common nodes: a third are affine; of the others of order 2, half are curved.
 template <Shape shape>
 assembly::Geometry random_cells(int n_cells) {
   using Cell = assembly::ReferenceCell<shape>;
@@ -94,7 +94,7 @@ void add_flow(Report& report, const std::string& name, FluxScheme scheme, int n_
   add_case(report, "flow, " + name, 600, report.n_timed > 0 ? n_timed : 0, make);
 }
 
-/// Of a fluid whose density and viscosity change.
+/// Adds flow of a fluid with variable density and viscosity.
 template <Shape shape>
 void add_changed_flow(Report& report, const std::string& name, FluxScheme scheme) {
   using Op = physics::ChangedFlow<physics::HybridCell<shape>>;
@@ -102,7 +102,7 @@ void add_changed_flow(Report& report, const std::string& name, FluxScheme scheme
     laws::FluidResponse response;
     response.expansion = 5e-4;
     response.thinning = 2e-2;
-    response.reference = 1.2e7;  // the unknowns are of one range; 1e-6 of that of pressures
+    response.reference = 1.2e7;  // the unknowns have one range, 1e-6 of that of pressures
     response.expansion *= 1e-6;
     response.thinning *= 1e-6;
     return std::pair(Op{flow_in_cells<shape>(n, scheme), response}, unknowns(n, Op::Columns::size, 5e6, 2e7));

@@ -1,4 +1,4 @@
-// All joint laws on random faces: residual, Jacobian and active set, and what is kept at the end of a step.
+// All joint laws on random faces: residual, Jacobian, contact state, and history variables at the end of a step.
 #include "joints.hpp"
 #include "physics/mechanics/balanced_side.hpp"
 #include "physics/mechanics/joint_face.hpp"
@@ -13,12 +13,12 @@ namespace {
 
 using mesh::Shape;
 
-/// Steps in which slip goes to and fro, so that laws have a history; the same faces in every program.
+/// Joints with a history of cyclic slip, equal in every program.
 template <int dim>
 struct Faces {
   std::vector<laws::Joint> joints;
   int n_kept = 0;
-  std::vector<Real> history;  // [joint, p_old and kept]
+  std::vector<Real> history;  // [joint, p_old and history variables]
 
   int size() const { return dim - 1 + n_kept; }
 
@@ -55,13 +55,13 @@ struct Faces {
   }
 };
 
-/// The operator of faces with the laws that it points to.
+/// Face operator with the laws that it points to.
 template <Shape shape>
 struct Face : physics::JointFace<mesh::dimension(shape), mesh::n_face_nodes(shape), false> {
   ConstView<laws::Joint*> laws;
 };
 
-/// What laws keep of a face after a step that ends at the unknowns.
+/// Computes the history variables of a face after a step that ends at the unknowns.
 template <class Face, int n_kept>
 struct Commit {
   static constexpr int dim = Face::dim;
@@ -83,7 +83,7 @@ struct Commit {
   }
 };
 
-/// Face f has joint f/n of all; frames, tractions and displacements are random.
+/// Returns operator and unknowns; face f has joint f/n of all. Frames, tractions and displacements are random.
 template <Shape shape>
 auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
   using Face = device::Face<shape>;
@@ -98,7 +98,7 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
   Face face;
   face.points.frame = filled<Real***>(
       [&](const auto& view) {
-        for (int f = 0; f < n; ++f) {  // a rotation
+        for (int f = 0; f < n; ++f) {  // rotation
           const Real a = random(0, 6.28), b = random(0, 3.14), ca = std::cos(a), sa = std::sin(a);
           const Real rows[3][3] = {{ca, sa, 0},
                                    {-sa * std::cos(b), ca * std::cos(b), std::sin(b)},
@@ -154,11 +154,11 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
   return std::pair(face, x);
 }
 
-/// Differences of what is kept are to be small beside it, or beside a length of 0.1 mm.
+/// Adds the commit of all faces. The scale of differences is the history variable, at least 1e-4.
 template <Shape shape>
 void add_commit(Report& report, const std::string& name, const Faces<mesh::dimension(shape)>& faces, int n) {
   using Face = device::Face<shape>;
-  constexpr int n_kept = device::n_kept<Face::dim>;  // that of `faces`, which have all laws
+  constexpr int n_kept = device::n_kept<Face::dim>;  // as in `faces`, which have all laws
   const auto made = joint_faces<shape>(faces, n);
   const Commit<Face, n_kept> commit{made.first, made.second, View<Real**>("out", n, n_kept)};
   Kokkos::parallel_for("commit", Kokkos::RangePolicy<Execution>(0, n), commit);
@@ -171,7 +171,7 @@ void add_commit(Report& report, const std::string& name, const Faces<mesh::dimen
     }
 }
 
-/// Every state must occur.
+/// Prints the numbers of faces per contact state. Throws if a state is rare.
 void tell_states(const std::string& name, const Case& one, int n) {
   const int size = static_cast<int>(one.value.size()) / n;
   int count[3] = {};
@@ -192,7 +192,7 @@ void add_joints(Report& report, const std::string& dim) {
   add_commit<shape>(report, dim + " faces, end of a step", all, n);
 }
 
-/// Sides of faces with any numbers.
+/// Returns sides of faces with random values.
 template <Shape shape>
 auto sides(int n) {
   using Side = physics::BalancedSide<shape>;

@@ -1,4 +1,4 @@
-// A joint of every combination of laws.
+// A joint for every combination of laws.
 #pragma once
 
 #include "laws/joint.hpp"
@@ -12,7 +12,7 @@
 
 namespace sprekk::device {
 
-/// Entries of materials, of a rock joint. A new law whose entries are not here is told of.
+/// Returns the value of an entry of a rock joint. A law with an unknown entry gives an error.
 inline Real entry(const std::string& name) {
   static const std::map<std::string, Real> values = {{"asperity angle", 6},
                                                      {"asperity damage coefficient", 2},
@@ -64,7 +64,7 @@ K with_entries() {
   K law;
   std::vector<Real K::*> done;
   for (const auto& [number, entry] : K::parameters()) {
-    bool again = false;  // another entry of the same number
+    bool again = false;  // other entry of the same parameter
     for (const auto& other : done) again = again || other == number;
     if (again) continue;
     done.push_back(number);
@@ -102,13 +102,13 @@ constexpr int most_kept(int dim = 3) {
   return most_kept(static_cast<Role*>(nullptr), dim);
 }
 
-/// How many numbers a joint keeps of a face at the most.
+/// Largest number of history variables of a face.
 template <int dim>
 constexpr int n_kept =
     most_kept<laws::DilationKinds>() + most_kept<laws::ClosureKinds>() + most_kept<laws::FrictionKinds>() +
     most_kept<laws::ShearKinds>() + most_kept<laws::BondKinds>() + most_kept<laws::DamageKinds>(dim);
 
-/// Of Coulomb's friction, a constant angle of dilation and hyperbolic closure: that of most scenes.
+/// Returns a joint with Coulomb friction, constant dilation angle and hyperbolic closure, as in most scenes.
 inline laws::Joint common_joint() {
   return {with_entries<laws::LinearShear>(),
           with_entries<laws::CoulombFriction>(),

@@ -1,9 +1,7 @@
 // kernels FILE [--time N]              evaluates the kernels on random faces and cells, times N of each, writes FILE
-// kernels FILE --against [--time N]    the same with the inputs of FILE, and compares with its numbers; status 1:
-// differ
+// kernels FILE --against [--time N]    uses the inputs of FILE and compares with its results; exit status 1: different
 //
-// Local operators of packages/physics with the laws in them, in loops of the execution space that the program was
-// compiled for.
+// Kernels are local operators of packages/physics with their laws, in loops of the execution space of the build.
 #include "report.hpp"
 
 #include <cstdio>
@@ -18,7 +16,7 @@ using namespace sprekk;
 using device::Report;
 using Numbers = std::vector<Real>;
 
-constexpr Real bound = 1e-12;  // of relative differences
+constexpr Real bound = 1e-12;  // bound on relative differences
 
 void write(std::ofstream& file, const std::string& name, const Numbers& numbers) {
   const std::size_t sizes[] = {name.size(), numbers.size()};
@@ -53,7 +51,7 @@ std::map<std::string, Numbers> read(const std::string& path) {
   return all;
 }
 
-/// The largest difference of numbers over their scale; infinite: not the same numbers of numbers, or one is none.
+/// Returns the largest difference relative to the scale; infinite if sizes differ or a value is not finite.
 Real difference(const Numbers& a, const Numbers& b, const Numbers& scale) {
   Real most = a.size() == b.size() && b.size() == scale.size() ? 0 : HUGE_VAL;
   for (std::size_t k = 0; k < a.size() && most < HUGE_VAL; ++k) {
@@ -64,7 +62,7 @@ Real difference(const Numbers& a, const Numbers& b, const Numbers& scale) {
   return most;
 }
 
-/// How many differ by more than the bound.
+/// Compares and prints all cases; returns whether all differences are within the bound.
 bool compare(const Report& report, std::map<std::string, Numbers> reference) {
   bool same = true;
   std::printf("%-36s %9s %10s %12s %12s %7s\n", "", "numbers", "difference", "1/s", "1/s there", "ratio");

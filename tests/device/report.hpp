@@ -1,4 +1,4 @@
-// Evaluates local operators in a loop of kernels; compares and times what they return.
+// Evaluates local operators in a kernel loop; compares and times them.
 #pragma once
 
 #include "base/view.hpp"
@@ -15,18 +15,18 @@
 
 namespace sprekk::device {
 
-/// Of one operator: numbers of all entities, the sizes that differences are to be compared with, and what it costs.
+/// Results of one operator: values of all entities, scales of their differences, and computing time.
 struct Case {
   std::vector<Real> value, scale;
-  Real seconds = 0;  ///< of an entity, residual and Jacobian
+  Real seconds = 0;  ///< per entity, residual and Jacobian
 };
 
-/// By name. `inputs` are computed once, by the program that the others are compared with.
+/// Results by name. `inputs` are computed once, by the reference program.
 struct Report {
   std::map<std::string, Case> cases;
   std::map<std::string, std::vector<Real>> inputs;
   bool has_inputs = false;
-  int n_timed = 0;  ///< entities of a loop that is timed; 0: none is
+  int n_timed = 0;  ///< entities of a timed loop; 0: no timing
 };
 
 template <class T>
@@ -34,7 +34,7 @@ auto host_of(const T& view) {
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
 }
 
-/// Fills a view on the host: fill(host view).
+/// Returns a view filled on the host by fill(host view).
 template <class Data, class Fill, class... Extents>
 View<Data> filled(const Fill& fill, Extents... extents) {
   const View<Data> view("view", extents...);
@@ -44,7 +44,7 @@ View<Data> filled(const Fill& fill, Extents... extents) {
   return view;
 }
 
-/// Numbers in [low, high), the same wherever they are computed.
+/// Random numbers in [low, high), equal on all machines.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
@@ -55,7 +55,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// Whether an operator tells the active set.
+/// Whether an operator returns the contact state.
 template <class Op, class = void>
 constexpr bool has_state_of = false;
 template <class Op>
@@ -68,7 +68,7 @@ struct Kernel {
   static constexpr int size = n_rows * (1 + n_columns) + has_state;
   Op op;
   View<Real**> x;    // [entity, column]
-  View<Real**> out;  // [entity, residual, Jacobian by rows[, active set]]
+  View<Real**> out;  // [entity, residual, Jacobian by rows[, contact state]]
 
   KOKKOS_INLINE_FUNCTION void operator()(int e) const {
     Real local[n_columns], r[n_rows], J[n_rows][n_columns];
@@ -83,7 +83,7 @@ struct Kernel {
   }
 };
 
-/// Evaluated once to be compared, or repeatedly to be timed.
+/// Evaluates an operator once (values and scales), or repeatedly (time only).
 template <class Op>
 Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
   using K = Kernel<Op>;
@@ -105,8 +105,8 @@ Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
     }
     return result;
   }
-  // differences are to be small beside: of a residual, the sum of |J_ik x_k|; of J_ik, the largest |J_il| u_l over u_k,
-  // u the mean size of an unknown; the active set is to be the same
+  // Scales of differences, with the mean size u of an unknown. Residual: sum of |J_ik x_k|; J_ik: the largest |J_il|
+  // u_l over u_k; contact state: 1, i.e. equality.
   const auto unknowns = host_of(x), numbers = host_of(kernel.out);
   std::vector<Real> unit(K::n_columns, 0);
   for (int e = 0; e < n; ++e)
@@ -131,7 +131,7 @@ Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
   return result;
 }
 
-/// make(n, seed) returns an operator and unknowns of n entities.
+/// Adds a case; make(n) returns an operator and unknowns of n entities.
 template <class Make>
 void add_case(Report& report, const std::string& name, int n, int n_timed, const Make& make) {
   const auto [op, x] = make(n);

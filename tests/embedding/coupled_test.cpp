@@ -1,4 +1,4 @@
-// The flow of a host coupled by exchange and as rows of the Jacobian, beside Sprekk's own.
+// Flow of a host, coupled by exchange and in one Jacobian, compared with Sprekk's own flow.
 #include "assembly/jacobian_check.hpp"
 #include "hosts/coupled.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A fluid is injected into a fracture, which opens: three codes of the same equations.
+/// Injection into a fracture, which opens: three implementations of the same equations.
 TEST(CoupledFlow, IsTheSameByExchangeAndInOneJacobian) {
   const auto comm = Tpetra::getDefaultComm();
   for (const int dim : {2, 3})
@@ -23,7 +23,7 @@ TEST(CoupledFlow, IsTheSameByExchangeAndInOneJacobian) {
       auto scene = hosts::block(dim, cells);
       scene.solver.linear_solver.type = solver;
       scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarse_size =
-          20;  // or all is direct
+          20;  // otherwise multigrid is a direct solver
       hosts::Exchange exchange(dim, cells, comm, scene);
       const auto together = hosts::make_together(scene, comm), sprekk = hosts::make_sprekk(scene, comm);
       std::set<std::array<int, 3>> states;
@@ -43,7 +43,7 @@ TEST(CoupledFlow, IsTheSameByExchangeAndInOneJacobian) {
           EXPECT_LT(hosts::distance(sprekk->output(name).values, values, *comm), 1e-8) << name;
         }
       }
-      EXPECT_EQ(states.size(), 2u);  // contact changes
+      EXPECT_EQ(states.size(), 2u);  // contact states change
     }
 }
 
@@ -67,8 +67,9 @@ TEST(CoupledFlow, JacobiansAreDerivativesOfResiduals) {
   }
 }
 
-/// Under an all-round load P_0 and one pressure p everywhere the strain follows from the effective stress
-/// -P_0 + alpha (p - p_0), the sides of fractures press on each other with P_0 - p, and pores gain alpha tr(strain).
+/// Under an all-round load P_0 and a uniform pressure p, the strain follows from the effective stress -P_0 + alpha (p
+/// - p_0). The sides of fractures have the contact pressure P_0 - p, and the pore volume increases by alpha
+/// tr(strain).
 TEST(GivenPressure, ChangesTheEffectiveStress) {
   const auto comm = Tpetra::getDefaultComm();
   for (const int dim : {2, 3})

@@ -1,5 +1,5 @@
-// What a host may rely on: scenes built in C++ are checked like those from files, fields are reached in place, modules
-// of its own count in everything, and its unknowns are solved for with the others.
+// Interface for hosts: scenes built in C++ are checked like files; fields are accessible in place; modules of the host
+// have the same services as built-in ones; their unknowns are part of the system.
 #include "assembly/jacobian_check.hpp"
 #include "base/xml.hpp"
 #include "hosts/grout.hpp"
@@ -17,7 +17,8 @@ using ::testing::HasSubstr;
 
 constexpr Real E = 10e9, K = 0.5e9, thickness = 0.02, squeeze = 5e-4;  // Pa, Pa, m, m
 
-/// A column of 1 m with a fracture through its middle, between rollers, its top moved down by 1 mm per unit of time.
+/// Returns a column of 1 m with a fracture through its middle, between rollers. Its top moves down by 1 mm per unit of
+/// time.
 model::Scene column(const Discretisation& cells) {
   const bool flat = cells.cell == "quadrilateral" || cells.cell == "triangle";
   const int dim = flat ? 2 : 3;
@@ -68,7 +69,7 @@ const std::vector<Discretisation> all = {{"quadrilateral", 1}, {"quadrilateral",
                                          {"triangle", 2},      {"hexahedron", 1},    {"hexahedron", 2},
                                          {"tetrahedron", 1},   {"tetrahedron", 2}};
 
-/// With the grout in the local group of contact, and with it beside the displacement.
+/// Calls visit with the grout in the local group of contact, and as a separate block.
 template <class Visit>
 void for_each_column(const std::vector<Discretisation>& some, const Visit& visit) {
   for (const auto& cells : some)
@@ -108,14 +109,14 @@ TEST(Grout, JacobianIsTheDerivativeOfTheResidual) {
   }
 }
 
-/// Springs in series, d = p (1 m/E + h/K), until the walls touch; then the rock alone yields.
+/// Springs in series, d = p (1 m/E + h/K), until the sides touch; then only the rock deforms.
 TEST(Grout, CarriesTheColumnThenTheWallsDo) {
   const std::vector<Discretisation> some = {{"quadrilateral", 1}, {"tetrahedron", 2}};
   for (const std::string solver : {"direct", "iterative"})
     for_each_column(solver == "direct" ? all : some, [&](model::Scene scene, const model::ModuleFactory& modules) {
       scene.solver.linear_solver.type = solver;
       scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarse_size =
-          20;  // or all is direct
+          20;  // otherwise multigrid is a direct solver
       model::Model model(scene, Tpetra::getDefaultComm(), modules);
       for (Real t : {1, 3}) {
         const auto report = model.step_to(t);
@@ -139,7 +140,7 @@ TEST(Grout, CarriesTheColumnThenTheWallsDo) {
     });
 }
 
-/// y^T A_rs x = x^T A_sr y for all remaining blocks, as the grout's declaration says.
+/// Checks y^T A_rs x = x^T A_sr y for all remaining blocks, as declared by the grout.
 TEST(Grout, CondensedSystemIsSymmetric) {
   for_each_column(
       {{"triangle", 1}, {"hexahedron", 1}}, [](const model::Scene& scene, const model::ModuleFactory& modules) {
@@ -161,7 +162,7 @@ TEST(Grout, CondensedSystemIsSymmetric) {
               y.randomize();
               there->apply(x, Ax);
               back->apply(y, Ay);
-              const auto& A = system.matrix()(remaining[r], remaining[s]);  // null where it stands in `there`
+              const auto& A = system.matrix()(remaining[r], remaining[s]);  // null where its values are in `there`
               const Real norm = (A.is_null() ? *there->crs() : *A).getFrobeniusNorm();
               const Real size = norm * x.norm2() * y.norm2();
               EXPECT_NEAR(y.dot(Ax), x.dot(Ay), 1e-13 * size) << r << ", " << s;
@@ -170,7 +171,7 @@ TEST(Grout, CondensedSystemIsSymmetric) {
       });
 }
 
-/// What is wrong with a scene is told in the same words whether it was built or read.
+/// Errors of a scene have equal messages for a scene built in code and one read from a file.
 TEST(SceneInCpp, IsCheckedLikeOneFromAFile) {
   const auto comm = Tpetra::getDefaultComm();
   const test::Scratch scratch(*comm);
@@ -208,16 +209,16 @@ TEST(SceneInCpp, IsCheckedLikeOneFromAFile) {
 
 TEST(SceneInCpp, IsMadeReady) {
   auto scene = column({"quadrilateral", 1});
-  scene.bulk.material = "gneiss";  // of the library
+  scene.bulk.material = "gneiss";  // of the material library
   scene.tables["ramp"] = {{0, 1}, {0, -1e-3}};
   scene.boundary_conditions["north"].displacement[1] = base::Expression("ramp(t)");
   model::Model model(scene, Tpetra::getDefaultComm());
   ASSERT_TRUE(model.step_to(1).converged);
-  EXPECT_THROW(model.step_to(1), Error);  // no step forward
+  EXPECT_THROW(model.step_to(1), Error);  // no time step
   EXPECT_EQ(model.scene().materials.count("gneiss"), 1u);
 }
 
-/// Unknowns that a host writes are where the iteration starts; histories change what comes next.
+/// Unknowns written by a host are the initial guess; changes of history variables affect later steps.
 TEST(Fields, AreReachedInPlace) {
   const auto comm = Tpetra::getDefaultComm();
   const auto scene = column({"quadrilateral", 2});
@@ -241,7 +242,7 @@ TEST(Fields, AreReachedInPlace) {
   EXPECT_THAT(error_of([&] { touched.output("aperure"); }), HasSubstr("Did you mean \"aperture\"?"));
 }
 
-/// Counts the steps on every node.
+/// Module that counts the steps on every node.
 class Counter : public assembly::Module {
  public:
   explicit Counter(const std::string& of = "steps") : of_(of) {}
@@ -301,7 +302,7 @@ TEST(OwnModules, AreSavedAndRestored) {
   EXPECT_THAT(error_of([&] { softer.restore(of_grout); }), HasSubstr("they differ in: module \"grout\";"));
 }
 
-/// T + T^3/S^2 = 2 S at every node, which T = S solves.
+/// T + T^3/S^2 = 2 S at every node, with the solution T = S.
 struct CubicNode {
   static constexpr int n = 4;
   using Columns = assembly::Slots<assembly::Slot<n, 1>>;
@@ -322,7 +323,7 @@ struct CubicNode {
 
 TEST(OwnModules, MayBeNonlinearAndShowUnknownsOfNodes) {
   auto scene = column({"quadrilateral", 1});
-  scene.mesh.periodic = {"x"};  // nodes without unknowns of their own
+  scene.mesh.periodic = {"x"};  // tied nodes without unknowns
   for (const char* side : {"west", "east"}) scene.boundary_conditions.erase(side);
   for (const char* end : {"south", "north"}) scene.boundary_conditions[end].displacement[0] = 0;
   const auto exact = [](const mesh::Mesh& mesh, LocalIndex node) {

@@ -1,4 +1,4 @@
-// A bar on springs: the module's Jacobian, and the displacement against a solution by hand.
+// Bar on springs: Jacobian of the module, and displacement compared with a manual solution.
 #include "assembly/jacobian_check.hpp"
 #include "mesh/box.hpp"
 #include "mesh/distribute.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr Real E = 2e9, length = 3, pull = 1e6, k = 5e8;  // Pa, m, Pa, Pa/m
 
-/// A bar along x on springs at its west end, pulled at its east end; free to contract sideways on rollers.
+/// Returns a bar along x on springs at its west end, with tension at its east end; rollers permit lateral contraction.
 std::unique_ptr<assembly::System> bar(const std::tuple<std::string, int>& cell_and_order) {
   mesh::BoxMesh box;
   std::tie(box.cell, box.order) = cell_and_order;

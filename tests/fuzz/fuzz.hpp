@@ -1,4 +1,4 @@
-// Feeds a reader with damaged files, each of which must be read or give an Error.
+// Tests a reader with damaged files; each must be read or give an Error.
 #pragma once
 
 #include <sys/mman.h>
@@ -15,12 +15,12 @@
 
 namespace sprekk::fuzz {
 
-/// What the child that reads tells its parent, also if it dies.
+/// Results of the reading child process in shared memory, available also after a crash.
 struct Progress {
   long next, n_read, n_refused;
 };
 
-/// Reads the inputs from progress.next up to `end`; exits with 0, or with 1 at one that is misread.
+/// Reads the inputs from progress.next up to `end`; exits with 0, or with 1 after a wrong result.
 [[noreturn]] inline void read_all(const char* name, const std::vector<std::string>& texts, long end,
                                   const std::function<std::string(const std::string&, const std::string&)>& read,
                                   Progress& progress) {
@@ -44,9 +44,9 @@ struct Progress {
   _exit(0);
 }
 
-/// The main program NAME FOLDER COUNT [FIRST]: files of a folder that end with `ending`, damaged in COUNT ways, go to
-/// `read`(undamaged, damaged), which returns what is wrong with what it has read. Reading happens in a child process,
-/// so that a crash or a hang ends only the input that it is about; its number is FIRST to repeat it alone.
+/// Main program NAME FOLDER COUNT [FIRST]: damages files *`ending` of a folder in COUNT ways and calls
+/// `read`(undamaged, damaged), which returns the defect of its result. Reading runs in a child process, so that a
+/// crash or time-out affects only one input. FIRST is the number of an input, to repeat it.
 inline int run(int argc, char** argv, const char* name, const char* ending,
                const std::function<std::string(const std::string&, const std::string&)>& read) {
   const auto texts = argc > 2 ? contents(argv[1], ending) : std::vector<std::string>();

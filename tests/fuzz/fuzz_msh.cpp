@@ -1,5 +1,5 @@
-// fuzz_msh FOLDER COUNT [FIRST]: reads the gmsh meshes of a folder, damaged in COUNT ways. Each must give a sound mesh
-// or an Error.
+// fuzz_msh FOLDER COUNT [FIRST]: reads the Gmsh meshes of a folder with COUNT random defects. Each must give a valid
+// mesh or an Error.
 #include <cmath>
 
 #include "fuzz.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace sprekk;
 
-/// What is wrong with the mesh, empty if nothing is.
+/// Returns the defect of the mesh; empty if there is none.
 std::string defect(const mesh::GlobalMesh& mesh) {
   const auto is_index = [](auto i, auto n) { return i >= 0 && i < static_cast<decltype(i)>(n); };
   for (Real x : mesh.coordinates)

@@ -1,5 +1,5 @@
-// fuzz_scene FOLDER COUNT [FIRST]: reads the scenes of a folder and those in it, damaged in COUNT ways. Each must be
-// read or give an Error.
+// fuzz_scene FOLDER COUNT [FIRST]: reads the scenes of a folder and its subfolders with COUNT random defects. Each
+// must be read or give an Error.
 #include <Teuchos_DefaultSerialComm.hpp>
 
 #include "fuzz.hpp"

@@ -1,4 +1,4 @@
-// Damages texts, the same way every time.
+// Reproducible damage of texts.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class Mutator {
  public:
   explicit Mutator(unsigned long long seed) : random_(seed) {}
 
-  /// The text with one to four kinds of damage.
+  /// Returns the text with one to four kinds of damage.
   std::string damaged(std::string text) {
     for (auto n = below(2) * below(4) + 1; n > 0; --n) damage(text);
     return text;
@@ -41,7 +41,7 @@ class Mutator {
       case 3:
         replace_number(text);
         break;
-      case 4: {  // a block again elsewhere
+      case 4: {  // copy of a block elsewhere
         const auto at = below(text.size());
         text.insert(below(text.size()), text.substr(at, below(400)));
         break;
@@ -58,7 +58,7 @@ class Mutator {
     }
   }
 
-  /// The place and length of a number, 0 if there is none.
+  /// Returns position and length of a number; length 0 if there is none.
   std::pair<std::size_t, std::size_t> some_number(const std::string& text) {
     const auto start = text.find_first_of("0123456789", below(text.size()));
     if (start == text.npos) return {0, 0};
@@ -98,7 +98,7 @@ class Mutator {
     if (length > 0) text.replace(start, length, extremes[below(std::size(extremes))]);
   }
 
-  /// Deletes a line, or writes it again or elsewhere.
+  /// Deletes a line, duplicates it, or moves it.
   void change_line(std::string& text) {
     const auto start = text.find('\n', below(text.size()));
     if (start == text.npos) return;
@@ -122,7 +122,7 @@ class Mutator {
   }
 };
 
-/// The content of all files in a folder and those in it with this ending, in the order of their names.
+/// Returns the contents of all files with this ending in a folder and its subfolders, in the order of their names.
 inline std::vector<std::string> contents(const std::string& folder, const std::string& ending) {
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))

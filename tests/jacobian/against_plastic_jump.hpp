@@ -1,4 +1,4 @@
-// States of which the Jacobian is the derivative of the residual.
+// States for which the Jacobian is the derivative of the residual.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,8 @@
 
 namespace sprekk {
 
-/// Turns the shear tractions against the plastic jump p_old that the committed state `before` left. Else slip against
-/// the traction, p.z < 0 <= p_old.z, could be among the states: there derivatives are those of contact_residual() along
-/// z, on purpose.
+/// Directs the shear tractions against the plastic jump p_old of the committed state `before`. This excludes slip
+/// against the traction, p.z < 0 <= p_old.z. There, contact_residual() intentionally has derivatives along z.
 inline void against_plastic_jump(assembly::System& system, const fields::BlockVector& before,
                                  fields::Vector& traction) {
   const int dim = system.mesh().dim();

@@ -1,4 +1,4 @@
-// The check of Jacobians finds what is wrong: a derivative that is off, and a dependency that is not declared.
+// The check of Jacobians detects wrong derivatives and undeclared dependencies.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>

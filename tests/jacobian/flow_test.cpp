@@ -1,4 +1,4 @@
-// The Jacobians of the modules of flow against differences.
+// Jacobians of the modules of flow, compared with differences.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
@@ -11,8 +11,8 @@
 namespace sprekk {
 namespace {
 
-/// Rock with an immersed fracture that resists, one that crosses it and one that runs from it to the boundary, full of
-/// a compressible fluid under gravity.
+/// Returns rock with an immersed fracture with normal resistance, one that crosses it and one from it to the boundary.
+/// The fluid is compressible and under gravity.
 model::Scene make_scene(const std::string& cell) {
   model::Scene scene;
   scene.mesh = mesh::testing::crossed(cell);

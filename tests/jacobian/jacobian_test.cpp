@@ -1,4 +1,4 @@
-// The Jacobian of every module of a scene against differences, with all faces open, sticking, slipping, and mixed.
+// Jacobian of every module of a scene, compared with differences, with all faces open, sticking, slipping, and mixed.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
@@ -26,7 +26,7 @@ constexpr Real infinite = std::numeric_limits<Real>::infinity();
 const Law everything{"everything", 4e9, 5, 0.02}, rigid{"rigid", infinite, 0, 0},
     linear{"closes linearly", 4e9, 5, infinite};
 
-/// Rock with an immersed fracture, one that crosses it and one that runs from it to the boundary.
+/// Returns rock with an immersed fracture, one that crosses it and one from it to the boundary.
 model::Scene make_scene(const std::string& cell, int order, const Law& law) {
   model::Scene scene;
   scene.mesh = mesh::testing::crossed(cell);
@@ -54,9 +54,9 @@ model::Scene make_scene(const std::string& cell, int order, const Law& law) {
   return scene;
 }
 
-/// Unknowns of which every face, by its global number, is in the state that `wanted` asks for: random displacements and
-/// bubbles of the size of the load, a normal traction that opens or closes, a shear traction far below or above the
-/// bound.
+/// Returns unknowns with each face in the state `wanted` (by global number). Displacements and bubbles are random with
+/// the magnitude of the load. The normal traction opens or closes the face; the shear traction is far below or above
+/// the bound.
 template <class Wanted>
 fields::BlockVector visit(assembly::System& system, const Wanted& wanted, int seed) {
   auto x = system.initial();
@@ -75,8 +75,8 @@ fields::BlockVector visit(assembly::System& system, const Wanted& wanted, int se
   return x;
 }
 
-/// The state of every face of this rank at x, with the plastic jump that `before` leaves behind: outputs show committed
-/// states, so a model of its own is asked.
+/// Returns the contact state of every face of this rank at x, with the plastic jump of `before`. Outputs are of
+/// committed states, hence the separate model.
 std::vector<Real> states(const model::Scene& scene, const fields::BlockVector& before, const fields::BlockVector& x) {
   model::Model model(scene, Tpetra::getDefaultComm());
   model.system().set_time(1, 1);
@@ -103,14 +103,17 @@ TEST_P(Jacobian, OfEveryModuleIsItsDerivativeInEveryState) {
                                                    return static_cast<ContactState>(face % 3);
                                                  };
   std::vector<Law> joint_laws{everything};
-  if (GetParam().order == 1) joint_laws.insert(joint_laws.end(), {rigid, linear});  // the law does not see the order
+  if (GetParam().order == 1)
+    joint_laws.insert(joint_laws.end(), {rigid, linear});  // the law does not depend on the
+                                                           // order
   for (const auto& law : joint_laws) {
     SCOPED_TRACE(law.name);
     const auto scene = make_scene(GetParam().cell, GetParam().order, law);
     model::Model model(scene, Tpetra::getDefaultComm());
     auto& system = model.system();
     system.set_time(1, 1);
-    const std::size_t n = GetParam().order == 1 ? 4 : 3;  // of modules and fields: with the enrichment of crack tips
+    const std::size_t n = GetParam().order == 1 ? 4 : 3;  // numbers of modules and fields, with the enrichment of
+                                                          // crack tips
     ASSERT_EQ(system.modules().size(), n);
     const auto before = visit(system, open, 1);
     system.commit(before);

@@ -1,4 +1,4 @@
-// The Jacobians of rock and fractures that a fluid moves, against differences.
+// Jacobians of poroelastic rock and fractures, compared with differences.
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
@@ -12,7 +12,8 @@
 namespace sprekk {
 namespace {
 
-/// One with a pressure and one with a rate; both cross (2D: lie on) the fracture "a", and in 3D run through rock.
+/// Adds a well with a pressure and one with a rate. Both cross (2D: are on) the fracture "a", and in 3D pass through
+/// rock.
 void add_wells(model::Scene& scene, int dim) {
   for (const bool by_rate : {false, true}) {
     auto& well = scene.flow->wells[by_rate ? "by rate" : "by pressure"];
@@ -22,7 +23,7 @@ void add_wells(model::Scene& scene, int dim) {
   }
 }
 
-/// Rock with fractures that cross and end in it, filled with a fluid; apertures grow and shrink.
+/// Returns fluid-filled rock with fractures that cross and end inside; apertures increase and decrease.
 model::Scene make_scene(const std::string& cell, Real compressibility) {
   model::Scene scene;
   scene.mesh = mesh::testing::crossed(cell);
@@ -42,7 +43,7 @@ model::Scene make_scene(const std::string& cell, Real compressibility) {
   joint.dilation_angle = base::Expression(5);
   joint.initial_aperture = base::Expression(1);
   joint.residual_aperture = base::Expression(0.8);
-  if (compressibility > 0) {  // both sides of where roughness begins to count, 1.12 m
+  if (compressibility > 0) {  // on both sides of the threshold of roughness, 1.12 m
     joint.hydraulic_aperture = "Barton";
     joint.entry("joint roughness coefficient") = base::Expression(263);
     joint.residual_aperture = base::Expression(0.5);
@@ -97,7 +98,7 @@ TEST_P(PoromechanicsJacobian, IsThatOfTransmissivitiesThatLag) {
   fields::copy(x, before);
   system.residual(x, exact);
   EXPECT_EQ(system.lag(fields::BlockProblem::Lag::follow, x), 0);
-  system.residual(x, lagged);  // at the x of its transmissivities f is what it was, up to rounding of a logarithm
+  system.residual(x, lagged);  // for coefficients at the same x, the residual is equal up to round-off of a logarithm
   for (std::size_t b = 0; b < x.size(); ++b) {
     lagged[b]->update(1, *exact[b], -1);
     EXPECT_LE(lagged[b]->normInf(), 1e-12);

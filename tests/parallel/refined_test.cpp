@@ -1,4 +1,4 @@
-// Meshes that ranks refine after they have been distributed, beside the same meshes made at once.
+// Meshes refined on the ranks, compared with fine meshes distributed directly.
 #include "verification/scenes.hpp"
 
 #include <map>
@@ -8,7 +8,7 @@ namespace {
 
 using Key = std::array<long long, 3>;
 
-/// Values of outputs on cells and fracture faces by the places of their centres. Collective.
+/// Outputs on cells and fracture faces by the coordinates of their centres. Construction is collective.
 class ByPlace {
  public:
   explicit ByPlace(model::Model& model) : mesh_(model.mesh()) {
@@ -52,11 +52,12 @@ class ByPlace {
   }
 };
 
-/// Lengths to 1e-9 of the prescribed displacement, stresses to 1e-8 of what it makes in the body; states exactly.
+/// Compares lengths within 1e-9 of the prescribed displacement, stresses within 1e-8 of the resulting stress; states
+/// exactly.
 void expect_same(const assembly::Scales& scales, const ByPlace& a, const ByPlace& b) {
   ASSERT_EQ(a.fields.size(), b.fields.size());
   for (const auto& [name, values] : a.fields) {
-    if (name == "slip tendency") continue;  // divided by a bound that may be small
+    if (name == "slip tendency") continue;  // its denominator may be small
     const auto& others = b.fields.at(name);
     ASSERT_EQ(values.size(), others.size()) << name;
     const bool stress = name == "stress" || name.find("traction") != name.npos;
@@ -69,7 +70,7 @@ void expect_same(const assembly::Scales& scales, const ByPlace& a, const ByPlace
   }
 }
 
-/// Compares a scene refined once with the scene on twice the cells, in all steps.
+/// Compares a scene refined once with the scene with twice the cells per direction, in all steps.
 void expect_as_made_at_once(const std::string& name, const std::vector<int>& cells, std::vector<std::string> changes) {
   changes.push_back("Solver.tolerance=1e-13");
   auto coarse = changes, fine = changes;
@@ -90,7 +91,7 @@ void expect_as_made_at_once(const std::string& name, const std::vector<int>& cel
   }
 }
 
-/// Fractures that cross, with tips in the rock.
+/// Crossing fractures, with tips in the rock.
 TEST(Refined, CrossingFractures) {
   expect_as_made_at_once("verification/crossing_2d.xml", {8, 8}, {"Mesh.cell=quadrilateral"});
   expect_as_made_at_once("verification/crossing_2d.xml", {8, 8},

@@ -1,4 +1,4 @@
-// The same answer on any number of ranks, value by value, as on one; and several models in one process.
+// Results on several ranks equal those on one rank; several models in one process.
 #include "verification/scenes.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -14,7 +14,8 @@
 namespace sprekk::tests {
 namespace {
 
-/// Until all ranks are here, asleep: those that MPI lets wait would take the processor from the one that works.
+/// Waits for all ranks in sleep. A barrier of MPI would use processor time of the rank that still computes.
+/// Collective.
 void wait_for_all(const Comm& comm) {
   MPI_Request request;
   MPI_Ibarrier(*dynamic_cast<const Teuchos::MpiComm<int>&>(comm).getRawMpiComm(), &request);
@@ -30,7 +31,7 @@ struct GlobalField {
   std::vector<Real> values;
 };
 
-/// Collective; the same on every rank.
+/// Returns all outputs of the whole mesh, equal on every rank. Collective.
 std::vector<GlobalField> gathered(model::Model& model) {
   const auto& mesh = model.mesh();
   std::vector<GlobalField> all;
@@ -50,9 +51,9 @@ std::vector<GlobalField> gathered(model::Model& model) {
   return all;
 }
 
-/// Lengths to 1e-10 of the prescribed displacement u, stresses to 1e-10 of the stress E u/L that it makes in a body of
-/// size L, contact states exactly, moments to 1e-10 of the largest. (The slip tendency follows from the traction, which
-/// it divides by a bound that may be small.)
+/// Compares outputs: lengths within 1e-10 of the prescribed displacement u, stresses within 1e-10 of E u/L in a body
+/// of size L, moments within 1e-10 of the largest, contact states exactly. The slip tendency is omitted: it is the
+/// traction over a bound that may be small.
 void expect_same(const assembly::Scales& scales, const std::vector<GlobalField>& a, const std::vector<GlobalField>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -77,8 +78,9 @@ struct Counts {
   int open = 0, stick = 0, slip = 0;
 };
 
-/// Runs all steps of a scene on all ranks and on rank 0 alone, which compares after each step: solved to round-off,
-/// since Newton's tolerance is a difference, too. Returns how many faces were in which state over all steps.
+/// Runs all steps of a scene on all ranks and on rank 0 alone, and compares after each step. Solutions are accurate to
+/// round-off, because Newton's tolerance would cause differences. Returns the numbers of faces in each state over all
+/// steps.
 Counts expect_same_answer(model::Scene scene) {
   scene.solver.tolerance = 1e-13;
   const auto comm = Tpetra::getDefaultComm();
@@ -132,7 +134,7 @@ TEST(SameAnswer, RenumberedAndSwapped) {
   expect_same_answer(scene);
 }
 
-/// Initial stress, gravity, ties, and a joint and a rock that change from place to place.
+/// Initial stress, gravity, ties, and non-uniform joint and rock properties.
 TEST(SameAnswer, LoadsAndVaryingMaterials) {
   expect_same_answer(read_scene("verification/lithostatic_3d.xml"));
   expect_same_answer(read_scene("verification/periodic_2d.xml", {"Mesh.cells={6, 8}"}));
@@ -159,7 +161,7 @@ TEST(SameAnswer, IterativeSolver) {
       read_scene("verification/crossing_3d.xml", {"Solver.Linear solver.type=iterative", "Time.schedule={1}"}));
 }
 
-/// A fracture in one corner: its faces have one owner.
+/// Fracture in one corner: one rank owns all its faces.
 TEST(SameAnswer, RanksWithoutFractureFaces) {
   const auto comm = Tpetra::getDefaultComm();
   if (comm->getSize() == 1) GTEST_SKIP() << "needs more than one rank";
@@ -188,7 +190,7 @@ TEST(SameAnswer, RanksWithoutCellsAndNoFracture) {
   expect_same_answer(read_scene("verification/uniaxial_3d.xml", {"Mesh.cell=hexahedron", "Mesh.cells={1, 1, 1}"}));
 }
 
-/// Two models step by step in turns, on the same communicator.
+/// Two models advance alternately on the same communicator.
 TEST(TwoModels, TakeTurns) {
   const auto comm = Tpetra::getDefaultComm();
   const auto scene_2d = read_scene("verification/crossing_2d.xml"), scene_3d = read_scene("verification/cyclic_3d.xml");
@@ -203,7 +205,7 @@ TEST(TwoModels, TakeTurns) {
   expect_same(b.system().scales(), gathered(b), gathered(only_b));
 }
 
-/// One group of ranks computes one scene while the others compute another, with different numbers of solves.
+/// Two groups of ranks compute two scenes with different numbers of solves.
 TEST(TwoModels, OnTwoCommunicators) {
   const auto world = Tpetra::getDefaultComm();
   if (world->getSize() == 1) GTEST_SKIP() << "needs more than one rank";

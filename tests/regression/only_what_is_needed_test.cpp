@@ -1,4 +1,4 @@
-// Nothing is allocated, assembled, exchanged or solved that the scene does not need.
+// Nothing unnecessary for the scene is allocated, assembled, exchanged or solved.
 #include "model/results.hpp"
 #include "verification/scenes.hpp"
 
@@ -21,7 +21,7 @@ std::vector<std::string> names(const json& list) {
 
 using Names = std::vector<std::string>;
 
-/// Ghost nodes of all ranks together. Collective.
+/// Returns the number of ghost nodes on all ranks. Collective.
 long long all_ghost_nodes(const mesh::Mesh& mesh) {
   const long long here = mesh.n_free_nodes - mesh.n_owned_nodes;
   long long all = 0;
@@ -37,7 +37,7 @@ TEST(IntactRock, IsOneFieldAssembledAndFactorisedOnce) {
                        Tpetra::getDefaultComm());
     const auto blocks = model::block_summary(model.system());
     EXPECT_EQ(names(blocks["fields"]), Names{"displacement"});
-    // received once per residual: the ghosts of all ranks, 8 bytes a component
+    // received once per residual: ghosts of all ranks, 8 bytes per component
     EXPECT_EQ(blocks["fields"][0]["halo_bytes"], 8 * dim * all_ghost_nodes(model.mesh()));
     EXPECT_EQ(blocks["matrices"].size(), 1u);
     EXPECT_EQ(names(blocks["modules"]), Names{"bulk momentum"});
@@ -68,11 +68,12 @@ TEST(IntactRock, ConstantLoadNeedsNoSecondSolve) {
   EXPECT_EQ(count(model, "linear solve"), 1);
 }
 
-/// Two by two squares and two faces. A square has 4 nodes, a half of the body 6: 2 (4 + 6 + 4) pairs of nodes. Every
-/// side of a face couples 4 nodes, of which 2 on the face; 2 components each. The displacement's matrix stands in that
-/// after elimination, in which a face couples the 4 nodes of one side to those of the other: 2 (16 + 16 - 4) pairs
-/// more, as those of the 2 nodes between the squares belong to both faces; it names each pair once. Tractions are along
-/// the axes, and act on the nodes of the face and on the bubble: what is zero in between has no place.
+/// Two by two squares and two faces, with 2 components per node. Each half of the body has two squares of 4 nodes, with
+/// 6 nodes and 2 (4 + 6 + 4) pairs of coupled nodes.
+/// Each side of a face couples 4 nodes, 2 of them on the face. The condensed displacement matrix also couples the 4
+/// nodes of both sides of a face: 2 (16 + 16 - 4) additional pairs. The pairs of the 2 nodes between the squares belong
+/// to both faces and are stored once. Tractions are along the axes and act on the nodes of the face and on the bubble;
+/// zero entries between them are not stored.
 TEST(Fractures, BlocksCountedByHand) {
   model::Model model(read_scene("seed/push_2d.xml"), Tpetra::getDefaultComm());
   const auto blocks = model::block_summary(model.system());
@@ -103,12 +104,12 @@ TEST(Fractures, BlocksCountedByHand) {
     const std::string row = matrix["row"], column = matrix["column"];
     const long long n = entries.at({row, column}), rows = row == "displacement" ? 24 : row == "side bubble" ? 8 : 4;
     EXPECT_EQ(matrix["entries"], n) << row << ", " << column;
-    const long long together = row == column && row == "displacement" ? dim : 1;  // rows, and columns
+    const long long together = row == column && row == "displacement" ? dim : 1;  // rows and columns per block
     EXPECT_EQ(matrix["bytes"], n * 8 + n / (together * together) * 4 + rows / together * 8) << row << ", " << column;
   }
 }
 
-/// What ranks exchange is what their neighbours need: ghosts of every field once, and nothing on one rank.
+/// Ranks exchange only the ghosts that neighbours need, once per field; one rank exchanges nothing.
 TEST(Fractures, GhostsAreExchangedOnce) {
   model::Model model(read_scene("verification/crossing_2d.xml"), Tpetra::getDefaultComm());
   const auto& mesh = model.mesh();
@@ -140,7 +141,7 @@ TEST(Fractures, StickingSceneIsFactorisedOnce) {
   }
 }
 
-/// Stick, slip, hold, stick: the matrix of a step that only sticks is the one before slip began.
+/// Stick, slip, constant load, stick: the matrix of a sticking step equals that before slip.
 TEST(Fractures, SlidingSceneIsFactorisedWhenItsMatrixChanges) {
   model::Model model(read_scene("verification/cyclic_2d.xml"), Tpetra::getDefaultComm());
   ASSERT_TRUE(model.step_to(1).converged);
@@ -150,7 +151,7 @@ TEST(Fractures, SlidingSceneIsFactorisedWhenItsMatrixChanges) {
   const int n_setups = model.newton().linear().n_setups();
   EXPECT_GT(n_setups, 1);
   EXPECT_LE(n_setups, 1 + slides.newton_iterations);
-  ASSERT_TRUE(model.step_to(3).converged);  // held: nothing to solve
+  ASSERT_TRUE(model.step_to(3).converged);  // constant load: no solve
   EXPECT_EQ(model.newton().linear().n_setups(), n_setups);
   EXPECT_EQ(count(model, "assembly of the linear part"), 1);
 }

@@ -1,4 +1,4 @@
-// Runs that go on from a checkpoint on another number of ranks.
+// Continuation of runs from a checkpoint on another number of ranks.
 #include "base/check.hpp"
 #include "io/checkpoints.hpp"
 #include "model/run.hpp"
@@ -21,9 +21,9 @@
 namespace sprekk::tests {
 namespace {
 
-using Values = std::map<std::string, std::map<GlobalIndex, Real>>;  ///< of each vector, by global number
+using Values = std::map<std::string, std::map<GlobalIndex, Real>>;  ///< [vector] [global number] value
 
-/// Runs on the first `ranks` of all; the others wait.
+/// Runs on the first `ranks` of all ranks; the others wait. Collective.
 void run(int ranks, const std::string& output, std::vector<std::string> overrides, bool restart) {
   const auto world = Tpetra::getDefaultComm();
   std::vector<int> members(ranks);
@@ -58,7 +58,7 @@ Values last_checkpoint(const std::string& output, int ranks) {
 
 using Checkpoint = decltype(last_checkpoint("", 1));
 
-/// On one rank.
+/// Compares two checkpoints; on one rank.
 void expect_values_to_agree(const Checkpoint& whole, const Checkpoint& parts, std::size_t n_vectors) {
   ASSERT_EQ(whole.size(), n_vectors);
   ASSERT_EQ(parts.size(), whole.size());
@@ -72,12 +72,12 @@ void expect_values_to_agree(const Checkpoint& whole, const Checkpoint& parts, st
       largest = std::max(largest, std::abs(value));
       difference = std::max(difference, std::abs(value - others.at(number)));
     }
-    if (name.find("runaway slip") == name.npos) EXPECT_GT(largest, 0);  // it does not run away here
+    if (name.find("runaway slip") == name.npos) EXPECT_GT(largest, 0);  // no runaway slip in this scene
     EXPECT_LE(difference, 1e-10 * largest) << "largest " << largest;
   }
 }
 
-/// From some ranks to others; of what joints have kept, too, where they have laws with a history.
+/// Compares restarts between numbers of ranks, also of history variables for joint laws with a history.
 void expect_values_to_agree(const std::vector<std::string>& laws, std::size_t n_vectors) {
   const auto world = Tpetra::getDefaultComm();
   int id = static_cast<int>(::getpid());

@@ -1,4 +1,4 @@
-// Scenes of hosts are checked like those of files, all at once.
+// Scenes of hosts are checked like files; all errors are reported together.
 #include "base/check.hpp"
 #include "verification/scenes.hpp"
 
@@ -49,7 +49,7 @@ TEST(SceneCheck, ModulesOfAHostMayHoldTheRock) {
   scene.bulk.material = "rok";
   EXPECT_EQ(n_lines(error_of(scene)), 2);
   EXPECT_EQ(n_lines(error_of(scene,
-                             [](const mesh::Mesh&) {  // which are not made, so that nobody knows
+                             [](const mesh::Mesh&) {  // not called, so supports are unknown
                                return std::vector<std::unique_ptr<assembly::Module>>();
                              })),
             1);
@@ -58,7 +58,7 @@ TEST(SceneCheck, ModulesOfAHostMayHoldTheRock) {
 TEST(SceneCheck, ConditionsThatHaveNoValueYetAreNoErrorOfTheModel) {
   auto scene = read_scene("seed/push_2d.xml");
   scene.boundary_conditions.at("moved").displacement = {base::Expression("0*sqrt(0.5-t)"), 0};
-  EXPECT_EQ(error_of(scene), "");  // a host steps where it likes
+  EXPECT_EQ(error_of(scene), "");  // a host chooses its own times
 }
 
 TEST(SceneCheck, EntriesOfTheOtherTypeOfMaterialAreRefused) {

@@ -1,4 +1,4 @@
-// Solvers and step cuts change how an answer is found, not the answer.
+// Solvers and bisections of steps do not change results.
 #include "verification/scenes.hpp"
 
 namespace sprekk::tests {
@@ -16,7 +16,7 @@ Run run(const std::string& name, const std::vector<std::string>& overrides, Real
   return run;
 }
 
-/// Largest difference of two states in a block, relative to the largest value. Collective.
+/// Returns the largest difference of two states in a block, relative to the largest value. Collective.
 Real difference_of(const Run& a, const Run& b, int block) {
   fields::Vector d(*a.model->state()[block], Teuchos::Copy);
   d.update(-1, *b.model->state()[block], 1);
@@ -41,9 +41,8 @@ TEST(LinearSolvers, GiveTheSameAnswer) {
   }
 }
 
-/// Multigrid of order 1 below order 2, quarter points and functions at crack tips: about as many iterations as order 1
-/// alone needs (18 on one rank), where multigrid on all unknowns, or on the displacement beside those functions, needs
-/// 27 to 34.
+/// Multigrid of order 1 below order 2, quarter points and tip functions: about as many iterations as order 1 (18 on
+/// one rank). Multigrid on all unknowns, or without the tip functions, needs 27 to 34.
 TEST(LinearSolvers, AFineLevelKeepsIterationsLow) {
   const std::vector<std::string> iterative = {"Solver.Linear solver.type=iterative", "Mesh.cells={6, 6, 6}"};
   for (const std::string entry : {"Mesh.order=2", "Mesh.tips=enriched"}) {
@@ -60,7 +59,7 @@ TEST(LinearSolvers, AFineLevelKeepsIterationsLow) {
   }
 }
 
-/// Faces that open and close change which couplings of order 2 are zero; multigrid on order 1 below it keeps its graph.
+/// Opening and closing faces change the zeros among couplings of order 2; multigrid of order 1 keeps its graph.
 TEST(LinearSolvers, OrderTwoFollowsContact) {
   auto r = run("contact/masonry_wall_2d.xml",
                {"Solver.Linear solver.type=iterative", "Mesh.cells={32, 24}", "Mesh.order=2"}, 1);
@@ -73,8 +72,8 @@ TEST(LinearSolvers, OrderTwoFollowsContact) {
   ASSERT_TRUE(r.report.converged) << r.report.reason;
 }
 
-/// Early ends of linear solves save iterations, while faces change state and after, and change neither the answer nor
-/// the number of Newton steps by much.
+/// Forcing ends linear solves early and saves iterations, during changes of contact states and afterwards. It changes
+/// neither the solution nor, significantly, the number of Newton steps.
 TEST(LinearSolvers, ForcingSavesIterations) {
   std::vector<std::string> overrides = {"Solver.Linear solver.type=iterative", "Mesh.tips=plain",
                                         "Materials.joint.friction coefficient=0.05",
@@ -83,7 +82,7 @@ TEST(LinearSolvers, ForcingSavesIterations) {
   overrides.back() = "Solver.Linear solver.forcing=false";
   const auto exact = run("contact/network_3d.xml", overrides, 2);
   for (const auto* r : {&forced, &exact}) ASSERT_TRUE(r->report.converged) << r->report.reason;
-  EXPECT_GT(exact.report.newton_iterations, 4);  // faces do change state
+  EXPECT_GT(exact.report.newton_iterations, 4);  // contact states change
   EXPECT_LE(forced.report.newton_iterations, exact.report.newton_iterations + 2);
   for (const int block : {0, 2}) EXPECT_LT(difference_of(exact, forced, block), 1e-8);
   EXPECT_LT(solve::iterations(forced.report.linear_solves), 0.65 * solve::iterations(exact.report.linear_solves));
@@ -91,7 +90,7 @@ TEST(LinearSolvers, ForcingSavesIterations) {
   for (const auto& linear : exact.report.linear_solves) EXPECT_LT(linear.residual, 1e-10);
 }
 
-/// The last solve need not be better than what ends Newton's method.
+/// The tolerance of the last linear solve follows from Newton's tolerance.
 TEST(LinearSolvers, ForcingLooksAtTheToleranceOfNewton) {
   std::vector<std::string> overrides = {"Solver.Linear solver.type=iterative", "Mesh.tips=plain",
                                         "Materials.joint.friction coefficient=0.05", "Solver.tolerance=1e-11"};
@@ -110,7 +109,7 @@ TEST(LinearSolvers, AutomaticChoiceFollowsItsLimits) {
   EXPECT_EQ(many.model->newton().linear().solver().reason.substr(0, 9), "iterative");
 }
 
-/// Displacements, and pressures in rock and fractures, with preconditioners of all kinds by the names of the blocks.
+/// Displacements, and pressures in rock and fractures, with all kinds of preconditioners by block names.
 TEST(LinearSolvers, BlocksArePreconditionedAsAsked) {
   const std::string name = "poro/injection_2d.xml", blocks = "Solver.Blocks.";
   const Real t = 1800;  // s
@@ -161,8 +160,8 @@ TEST(LinearSolvers, EntriesOfTheLibrariesTakeEffect) {
   EXPECT_LT(difference_of(usual, cg, 0), 1e-8);
 }
 
-/// Newton may take three steps, which is too few for the whole load: the step is cut, and ends where it should. The
-/// sides follow the shear traction min(2/3 d_t, 0.18), so that every substep is exact.
+/// With a limit of three Newton steps, the full step fails and is bisected; the step must reach its end. The traction
+/// on the sides is the exact shear traction min(2/3 d_t, 0.18), so every substep is exact.
 TEST(StepCuts, ReachTheEndOfTheStep) {
   const std::string name = "verification/cyclic_3d.xml";
   const std::vector<std::string> path = {"Time.schedule={1}", "Tables.tangential.arguments={0, 1}",

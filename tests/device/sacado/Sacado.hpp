@@ -1,5 +1,5 @@
-// In place of Sacado's header of this name: the type of numbers with derivatives, for any Kokkos. The rest of Sacado
-// knows the views of the Kokkos that it came with.
+// Replacement of Sacado's header of this name: only the type of numbers with derivatives, for any version of Kokkos.
+// Other parts of Sacado depend on the views of its own Kokkos version.
 #pragma once
 
 #include <Kokkos_Core.hpp>

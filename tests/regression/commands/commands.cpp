@@ -1,9 +1,9 @@
-// The program, for many commands in one process: many_commands.py starts it.
+// The program for many commands in one process, started by many_commands.py.
 //
 //   commands FOLDER
 //
-// Rank R reads commands from the pipe FOLDER/in.R, a line each: the directory to run in and the words, each with a tab
-// behind it. The output of a command goes to FOLDER/out.R and FOLDER/err.R, its status to the pipe FOLDER/status.R.
+// Rank R reads commands from the pipe FOLDER/in.R, one per line: working directory and words, each followed by a tab.
+// The output of a command is in FOLDER/out.R and FOLDER/err.R; its exit status is written to the pipe FOLDER/status.R.
 #define main sprekk_main
 #include "sprekk/main.cpp"
 #undef main
