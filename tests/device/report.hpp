@@ -55,7 +55,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// Whether an operator returns the contact state.
+/// True if an operator returns the contact state.
 template <class Op, class = void>
 constexpr bool has_state_of = false;
 template <class Op>

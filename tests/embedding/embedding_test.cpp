@@ -1,5 +1,5 @@
-// Interface for hosts: scenes built in C++ are checked like files; fields are accessible in place; modules of the host
-// have the same services as built-in ones; their unknowns are part of the system.
+// Interface for hosts: scenes built in C++ are checked like files, and fields are accessible in place. Modules of the
+// host have the same services as built-in modules, and their unknowns are part of the system.
 #include "assembly/jacobian_check.hpp"
 #include "base/xml.hpp"
 #include "hosts/grout.hpp"

@@ -1,4 +1,4 @@
-// The smallest host: takes a scene through its time steps and prints how far each fracture face has slipped.
+// Minimal host: runs all time steps of a scene and prints the slip of each fracture face.
 #include "model/model.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -8,7 +8,7 @@
 using namespace sprekk;
 
 int main(int argc, char** argv) {
-  Tpetra::ScopeGuard guard(&argc, &argv);  // MPI and Kokkos, as long as main runs
+  Tpetra::ScopeGuard guard(&argc, &argv);  // initialises and finalises MPI and Kokkos
   const auto comm = Tpetra::getDefaultComm();
   try {
     model::Model model(model::read_scene(*comm, argc > 1 ? argv[1] : "scene.xml"), comm);
@@ -16,11 +16,11 @@ int main(int argc, char** argv) {
       const auto report = model.step_to(t);
       if (!report.converged) throw Error(report.reason);
     }
-    const auto slip = model.output("slip").values;  // of the faces of this rank
+    const auto slip = model.output("slip").values;  // faces of this rank
     for (std::size_t face = 0; face < slip.size(); ++face)
       std::cout << "face " << model.mesh().fracture_faces[face].id << ": " << slip[face] << " m\n";
     return 0;
-  } catch (const Error& error) {  // the same on every rank
+  } catch (const Error& error) {  // thrown on every rank
     std::cerr << error.what() << '\n';
     return 1;
   }

@@ -20,7 +20,7 @@ std::string content(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Writes a line before the file is open, then a warning and an error.
+/// Logs a line before the file is open, then a warning and an error.
 void add_lines(const std::string& path, bool append) {
   const auto comm = Tpetra::getDefaultComm();
   std::ostringstream out, warnings;

@@ -38,7 +38,7 @@ struct ShiftedRock {
     x = rock.system->initial();
     for (LocalIndex c = 0; c < rock.mesh->n_cells(); ++c)
       for (int a = 0; a < rock.mesh->nodes_per_cell(); ++a)
-        for (int i = 0; i < dim && rock.mesh->cell_region[c] == 1; ++i) {  // the stiff part lies above
+        for (int i = 0; i < dim && rock.mesh->cell_region[c] == 1; ++i) {  // the stiff part is above
           const LocalIndex unknown = rock.mesh->cells[c * rock.mesh->nodes_per_cell() + a] * dim + i;
           Real u = 0;
           for (int k = 0; k < dim; ++k) u += frame[k][i] * jump[k];

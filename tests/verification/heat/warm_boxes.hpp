@@ -7,7 +7,7 @@ namespace sprekk::tests {
 
 using base::Expression;
 
-/// Adds heat to a scene: initial temperature T_0, conductivity and capacity of all materials, capacity c of the fluid.
+/// Adds heat to a scene: initial temperature T_0, conductivity and capacity of the rocks, capacity c of the fluid.
 inline void warm(model::Scene& scene, Real T_0, Real conductivity, Real capacity, Real c) {
   scene.heat.emplace().initial_temperature = Expression(T_0);
   if (scene.flow) scene.heat->fluid_capacity = c;

@@ -150,7 +150,7 @@ TEST(Bond, ConstantCohesionStays) {
   EXPECT_EQ(pulled[0].traction[0], 0);
 }
 
-/// A face that is pulled apart bears c (1 - o/o_0) in shear, and that again when it is closed.
+/// An opening face has the shear strength c (1 - o/o_0), which recovers on closing.
 TEST(Bond, LosesConstantCohesionByOpening) {
   const auto states =
       drive("cyclic_shear.xml", {"Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=0.05",

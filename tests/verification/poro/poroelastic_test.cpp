@@ -6,8 +6,8 @@ namespace {
 
 constexpr Real G = 3, lambda = 2, biot = 0.7, growth = 0.4;
 
-/// Returns the box of the suites of flow with crossing fractures; with `tips` also a fracture that ends inside. Sides
-/// in coordinate planes have no normal displacement.
+/// Returns the deformable box of the suites of flow with crossing fractures; with `tips`, with one fracture that ends
+/// inside instead. The sides west, south and bottom have no normal displacement.
 model::Scene deforming_box(const std::string& cell, bool tips = false) {
   auto scene = closed_box(cell);
   const bool flat = is_flat(cell);
@@ -35,7 +35,7 @@ model::Scene deforming_box(const std::string& cell, bool tips = false) {
   return scene;
 }
 
-/// Adds a pressure load on the other sides.
+/// Adds a pressure load on the sides east, north and top.
 void press(model::Scene& scene, Real pressure) {
   const int dim = static_cast<int>(scene.mesh.lower_corner.size());
   const std::vector<std::string> sides = {"east", "north", "top"};

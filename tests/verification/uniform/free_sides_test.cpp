@@ -18,7 +18,7 @@ Answer operator-(const Answer& a, const Answer& b) {
           difference(a.above_centre, b.above_centre), difference(a.above_end, b.above_end)};
 }
 
-/// Mean displacement of the nodes of one side of the fracture at x. Bubbles vanish at nodes. Collective.
+/// Returns the mean displacement of the nodes on a side of the fracture at x. Bubbles vanish at nodes. Collective.
 Vector3 displacement_at(model::Model& model, mesh::Side side, Real x) {
   const auto& mesh = model.mesh();
   const Outputs out(model);
