@@ -1,4 +1,4 @@
-// Nodes that are one node of the mesh before it was split and tied.
+// Nodes that were one node before splitting and tying.
 #pragma once
 
 #include <optional>
@@ -10,26 +10,26 @@
 
 namespace sprekk::mesh {
 
-/// Sets of nodes that are copies of one another or tied to each other. Of a distributed mesh, which has no tied nodes,
-/// the sets reach over the ranks; construction, to_largest() and any() are collective.
+/// Sets of nodes that are copies of each other or tied to each other. In a distributed mesh, which has no tied nodes,
+/// sets extend over ranks. Its constructor, to_largest() and any() are then collective.
 class AlikeNodes {
  public:
   explicit AlikeNodes(const GlobalMesh& mesh);
   explicit AlikeNodes(const Mesh& mesh);
 
-  /// The number of a node's set.
+  /// Number of the set of a node.
   GlobalIndex operator[](GlobalIndex node) const { return number_[node]; }
 
-  /// Gives all nodes of a set the largest of their values.
+  /// Sets the values of all nodes of a set to their maximum.
   void to_largest(std::vector<GlobalIndex>& values);
 
-  /// Whether it is so on any rank.
+  /// Returns true if `here` is true on any rank.
   bool any(bool here) const;
 
  private:
   UnionFind sets_;
   std::vector<GlobalIndex> number_;
-  RCP<const Comm> comm_;  // of a distributed mesh
+  RCP<const Comm> comm_;  // null for a global mesh
   std::optional<GhostExchange> exchange_;
 };
 

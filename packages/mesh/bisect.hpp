@@ -1,46 +1,49 @@
-// Local refinement: triangles and tetrahedra are halved where it is asked for, and the mesh stays conforming.
+// Local refinement: bisection of selected triangles or tetrahedra into a conforming mesh.
 #pragma once
 
 #include "mesh/mesh.hpp"
 
 namespace sprekk::mesh {
 
-/// A mesh of triangles or tetrahedra that cells are halved in, by the rules of Arnold, Mukherjee and Pouly (2000).
+/// Mesh of triangles or tetrahedra, refined by the bisection of Arnold, Mukherjee and Pouly (2000).
 ///
-/// A cell is halved through the middle of its refinement edge and the corners that are not on it. Each face has a
-/// marked edge, which is the refinement edge of the child that inherits the face whole; on a face that is cut, and on
-/// the new one between the children, it is the edge opposite to the new node, but for new faces of cells whose marked
-/// edges lie in one plane, every second time. At first these are the longest edges, so that both cells at a face mark
-/// the same one. So cells keep a finite number of shapes, however often they are halved.
+/// The cutting plane contains the midpoint of the refinement edge and the corners not on this edge. Every face has a
+/// marked edge. The marked edge of the face inherited uncut becomes the refinement edge of a child. On cut faces and on
+/// the new face between the children, the edge opposite to the new node is marked. There is one exception: if the
+/// marked edges of the parent lie in one plane, every second new face has another marked edge. At first the longest
+/// edges are marked, so both cells at a face agree. The number of cell shapes is therefore bounded for any number of
+/// bisections.
 ///
-/// Both sides of a fracture are halved alike, for nodes are joined before and split again after; faces inherit side,
-/// fracture and boundary, cells their region. Nothing depends on the number of ranks: who holds the mesh halves it.
+/// Both sides of a fracture are cut identically: nodes are merged before and split again after refinement. Faces
+/// inherit side, fracture and boundary; cells inherit their region. The result is independent of the number of ranks:
+/// each rank that stores the mesh refines it. Not collective.
 class Bisection {
  public:
-  /// Of a mesh of order 1 as split() gives it. Throws an Error if it has other cells, or tied nodes.
+  /// Takes a mesh of order 1 from split(). Throws an Error for cells other than simplices of order 1, or for tied
+  /// nodes.
   explicit Bisection(const GlobalMesh& mesh);
 
-  /// Halves the cells with these numbers in mesh(), and the children `times` - 1 times more; and others until the mesh
-  /// conforms, which are a bounded number for each of these.
+  /// Bisects the given cells (numbers in mesh()), and their children `times` - 1 times again. Further cells are
+  /// bisected until the mesh conforms; their number per given cell is bounded.
   void refine(const std::vector<GlobalIndex>& cells, int times = 1);
 
-  /// The mesh as it is, split along its fractures. Nodes keep their numbers, copies of split ones follow the new ones;
-  /// children take the place of their parent in the order of cells. Of order 2 with straight edges.
+  /// Returns the present mesh, split along its fractures. Nodes preserve their numbers; copies of split nodes follow
+  /// the new nodes. Children replace their parent in the order of cells. Cells of order 2 have straight edges.
   GlobalMesh mesh(int order = 1) const;
 
   GlobalIndex n_cells() const { return static_cast<GlobalIndex>(cells_.size()); }
 
  private:
-  using Edge = std::array<signed char, 2>;  ///< two of the corners of a cell, by their places in it
+  using Edge = std::array<signed char, 2>;  ///< two corners of a cell, as local numbers
   struct Cell {
     std::array<GlobalIndex, 4> node;  ///< its corners
-    std::array<int, 4> label;         ///< of the face opposite to each corner, see Label; -1: nothing is there
+    std::array<int, 4> label;  ///< label of the face opposite to each corner, index into labels_; -1: interior face
     int region;
     Edge edge;                   ///< refinement edge
-    std::array<Edge, 2> marked;  ///< of the face opposite to either end of that; in 3D
-    bool flag;  ///< whether the next new face inside, of marked edges in one plane, is marked otherwise
+    std::array<Edge, 2> marked;  ///< marked edge of the face opposite to each end of the refinement edge; 3D
+    bool flag;                   ///< next new inner face gets the other marked edge, if the marked edges are coplanar
   };
-  /// What a cell's face lies on: a boundary, or one side of a fracture.
+  /// Geometric object of a cell face: a boundary or one side of a fracture.
   struct Label {
     int boundary = -1, fracture = -1, single = 0, side = 0;
   };
@@ -53,7 +56,7 @@ class Bisection {
   void add_faces(GlobalMesh& mesh) const;
 
   int dim_;
-  GlobalMesh empty_;  // names, and no entities
+  GlobalMesh empty_;  // names only, no entities
   std::vector<Real> coordinates_;
   std::vector<Cell> cells_;
   std::vector<Label> labels_;

@@ -1,4 +1,4 @@
-// Which cells move together.
+// Sets of connected cells.
 #pragma once
 
 #include <vector>
@@ -7,20 +7,20 @@
 
 namespace sprekk::mesh {
 
-/// Sets of cells that are connected through common faces, and no others. Cells that share but an edge or a corner, or
-/// nodes tied by periodicity, are not connected by these.
+/// Sets of cells connected through common faces. A common edge or corner, or nodes tied by periodicity, do not connect
+/// cells.
 struct Bodies {
   std::vector<int> of_cell;          ///< [cell] number of its body
-  std::vector<GlobalIndex> n_cells;  ///< [body], in the order of their lowest cells
+  std::vector<GlobalIndex> n_cells;  ///< [body], ordered by the lowest cell
 
   int n() const { return static_cast<int>(n_cells.size()); }
 };
 
-/// The bodies of a split mesh, joined across fractures too: what contact can hold together. Throws an Error if more
-/// than two cells share a face. Not collective.
+/// Returns the bodies of a split mesh, connected also across fractures, so a body can be held together by contact.
+/// Throws an Error if more than two cells share a face. Not collective.
 Bodies find_bodies(const GlobalMesh& mesh);
 
-/// The pieces of rock that fractures separate from each other. Throws like find_bodies(). Not collective.
+/// Returns the pieces of rock separated by fractures. Throws like find_bodies(). Not collective.
 Bodies find_pieces(const GlobalMesh& mesh);
 
 }  // namespace sprekk::mesh

@@ -1,4 +1,4 @@
-// From the global mesh to each rank's part.
+// Distribution of the global mesh to the ranks.
 #pragma once
 
 #include <functional>
@@ -8,20 +8,20 @@
 
 namespace sprekk::mesh {
 
-/// This rank's part of the mesh, with ownership and ghosts as documented at Mesh. `part` is the rank of each cell.
-/// A rank may own no cell. Owned and ghost entities are each in ascending global order. A fracture face's frame and
-/// centre (mean of its nodes) are computed from its minus cell and bit-identical on all ranks.
-/// Collective; `mesh` and `part` are the same on all ranks. Throws an Error if a part is not a rank, if a node belongs
-/// to no cell, or if the two sides of a fracture face do not coincide.
+/// Returns this rank's part of the mesh, with owners and ghosts as documented at Mesh. `part` contains the rank of each
+/// cell. A rank may own no cell. Owned entities and ghosts are each in ascending global order. The frame and the centre
+/// (mean of the corners) of a fracture face are computed from its minus cell, bitwise identical on all ranks. `mesh`
+/// and `part` must be identical on all ranks. Throws an Error if a part is not a rank, a node belongs to no cell, or
+/// the sides of a fracture face do not coincide. Collective.
 RCP<const Mesh> distribute(const GlobalMesh& mesh, const std::vector<int>& part, RCP<const Comm> comm);
 
-/// Every rank's part of a mesh that only rank 0 holds, as distribute() would give it with the partition() into one part
-/// per rank. make() is called on rank 0 only, which then builds and sends the parts one by one: no other rank ever
-/// holds more than its part, rank 0 at most the mesh, one part, and that part packed. Collective. An exception on rank
-/// 0, in make() too, becomes an Error on all ranks.
+/// Distributes a mesh stored on rank 0 only. The result is that of distribute() with partition() into one part per
+/// rank. make() runs on rank 0, which builds and sends the parts one by one. Other ranks store only their part; rank 0
+/// stores the mesh, one part, and the packed part. An exception on rank 0, also in make(), becomes an Error on all
+/// ranks. Collective.
 RCP<const Mesh> make_distributed(const std::function<GlobalMesh()>& make, RCP<const Comm> comm);
 
-/// The same with the mesh of rank 0; that of other ranks is not read.
+/// Distributes the mesh of rank 0; `mesh` is not read on other ranks. Collective.
 RCP<const Mesh> make_distributed(const GlobalMesh& mesh, RCP<const Comm> comm);
 
 }  // namespace sprekk::mesh

@@ -1,4 +1,4 @@
-// What ranks tell each other about entities that they share.
+// Exchange of values of shared entities between ranks.
 #pragma once
 
 #include <Tpetra_Import.hpp>
@@ -11,13 +11,14 @@
 
 namespace sprekk::mesh {
 
-/// Between the owners of entities and the ranks that have them as ghosts.
+/// Exchange of values between the owners of entities and the ranks with ghost copies.
 class GhostExchange {
  public:
-  /// `ids` are the global numbers of this rank's entities, the first n_owned of them owned. Collective.
+  /// Builds the exchange. `ids` are the global numbers of the entities on this rank; the first n_owned are owned.
+  /// Collective.
   GhostExchange(const std::vector<GlobalIndex>& ids, LocalIndex n_owned, const RCP<const Comm>& comm);
 
-  /// Sets the values of ghosts, [entity * width + k], to those of their owners. T is an integer type. Collective.
+  /// Sets the values of ghosts [entity * width + k] to those of their owners. T is an integer type. Collective.
   template <class T>
   void operator()(std::vector<T>& values, int width = 1) const {
     const auto n = base::n_local_elements(*import_.getTargetMap());
@@ -32,7 +33,7 @@ class GhostExchange {
     }
   }
 
-  /// Sets the values of entities, none of them negative, to the largest that any rank has. Collective.
+  /// Sets each value to its maximum over all ranks. Values must not be negative. Collective.
   void to_largest(std::vector<GlobalIndex>& values) const;
 
  private:
@@ -42,8 +43,9 @@ class GhostExchange {
   mutable Vector owned_, all_;  // one component
 };
 
-/// For each of this rank's entities the sum of the counts of all entities, on any rank, with lower numbers. No number
-/// is in `ids` of two ranks, which are ascending. Independent of who has which. Collective.
+/// Returns for each entity of this rank the sum of the counts of all entities with lower numbers on all ranks. The
+/// numbers in `ids` are ascending, and no number occurs on two ranks. The result is independent of the distribution.
+/// Collective.
 std::vector<GlobalIndex> sums_before(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& counts,
                                      const RCP<const Comm>& comm);
 

@@ -1,4 +1,4 @@
-// How large the domain and its fractures are.
+// Sizes of the domain and of its fractures.
 #pragma once
 
 #include <vector>
@@ -7,19 +7,19 @@
 
 namespace sprekk::mesh {
 
-/// Size of the domain's bounding box in each direction, m; in 2D the third is zero. Collective.
+/// Size of the bounding box of the domain in each direction, m; the third is 0 in 2D. Collective.
 Vector domain_extents(const Mesh& mesh);
 
-/// The largest of them. Collective.
+/// Largest size of the bounding box of the domain, m. Collective.
 Real largest_extent(const Mesh& mesh);
 
-/// The area of the face of a typical cell (2D: its length): the domain's bounding box is shared out among the cells.
-/// Collective.
+/// Face area of a typical cell, m^2 (2D: length, m): (V/n)^((d-1)/d), with V the volume of the bounding box of the
+/// domain and n the number of cells. Collective.
 Real typical_face_area(const Mesh& mesh);
 
-/// The domain_extents() of each fracture. Collective.
+/// Size of the bounding box of each fracture in each direction, m. Collective.
 std::vector<Vector> fracture_extents(const Mesh& mesh);
-/// The same of each single fracture.
+/// Size of the bounding box of each single fracture in each direction, m. Collective.
 std::vector<Vector> single_fracture_extents(const Mesh& mesh);
 
 }  // namespace sprekk::mesh

@@ -1,4 +1,4 @@
-// Physical groups of faces inside of a mesh, of which a scene lists some as fractures.
+// Physical groups of faces inside the mesh. The scene lists some of them as fractures.
 #pragma once
 
 #include <map>
@@ -10,17 +10,18 @@
 
 namespace sprekk::mesh {
 
-/// A face inside of a mesh: the element of the file that it is, for messages, and the groups that it is in.
+/// Face inside the mesh: its element in the file, for messages, and its groups.
 struct InnerFace {
   std::string element;
   std::set<std::string> groups;
 };
 
-/// By faces. Each may be in several groups, of which one is a fracture; other groups do not count there.
+/// Inner faces by face number. A face may have several groups. Exactly one must be a fracture; its other groups are
+/// ignored.
 using InnerFaces = std::map<GlobalIndex, InnerFace>;
 
-/// The error in the choice of `fractures`, and a right choice: a face in two of them, or in none. Empty if
-/// each face is in one.
+/// Returns an error message if a face is in two of the `fractures` or in none, with advice for a correct list. Returns
+/// an empty text if each face is in exactly one fracture.
 std::string wrong_fractures(const InnerFaces& faces, const std::vector<std::string>& fractures,
                             const std::vector<std::string>& boundaries);
 

@@ -10,7 +10,7 @@
 
 namespace sprekk::mesh {
 
-using Vector = std::array<Real, 3>;  ///< a point or vector; the last component is 0 in 2D
+using Vector = std::array<Real, 3>;  ///< point or vector; the last component is 0 in 2D
 
 inline Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -23,10 +23,10 @@ inline Vector cross(const Vector& a, const Vector& b) {
 
 Vector point(const GlobalMesh& mesh, GlobalIndex node);
 
-/// Nodes of a cell's face in the order of face_nodes(shape); unused entries are -1.
+/// Nodes of one face of a cell, in the order of face_nodes(shape); unused entries are -1.
 std::array<GlobalIndex, max_face_nodes> nodes_of_face(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
-/// The corners of a cell's face, the lowest first; unused entries are -1. The same from both sides.
+/// Corners of a face in ascending order, thus equal from both sides; unused entries are -1.
 using SortedCorners = std::array<GlobalIndex, 4>;
 
 struct SortedCornersHash {
@@ -49,7 +49,7 @@ inline SortedCorners sorted_corners(const GlobalMesh& mesh, GlobalIndex cell, in
   return corners;
 }
 
-/// The corners of a face in order around it, and how many they are.
+/// Coordinates of the corners of a face, m, in order around the face, and their number.
 struct FaceCorners {
   std::array<Vector, 4> x;
   int n;
@@ -57,20 +57,20 @@ struct FaceCorners {
 
 FaceCorners face_corners(const Mesh& mesh, LocalIndex cell, int local_face);
 
-/// Area times unit normal of a face, outward where the corners are ordered as in face_nodes(); in 2D length times
-/// normal. Exact for plane faces.
+/// Area times unit normal of a face, m^2 (2D: length times normal, m). The vector points outward if the corners have
+/// the order of face_nodes(). It is exact for plane faces.
 Vector area_vector(const FaceCorners& corners);
 Vector area_vector(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
-/// The points, sorted, in which a face with these numbers of points at its corners ends: ridge k is corner k in 2D (the
-/// second is -1), the edge from corner k to the next in 3D.
+/// Points at ridge k of a face with the given points at its corners, in ascending order. In 2D, ridge k is corner k,
+/// and the second entry is -1. In 3D, it is the edge from corner k to the next.
 inline std::array<GlobalIndex, 2> ridge_points(const std::array<GlobalIndex, 4>& corners, Shape shape, int k) {
   if (dimension(shape) == 2) return {corners[k], -1};
   const GlobalIndex a = corners[k], b = corners[(k + 1) % n_face_corners(shape)];
   return {a < b ? a : b, a < b ? b : a};
 }
 
-/// The middle of ridge k of a fracture face, and its length; 1 in 2D.
+/// ridge_centre() returns the midpoint of ridge k of a fracture face, ridge_length() its length, m; 1 in 2D.
 Vector ridge_centre(const Mesh& mesh, LocalIndex face, int k);
 Real ridge_length(const Mesh& mesh, LocalIndex face, int k);
 
@@ -85,9 +85,9 @@ Vector cell_centre(const Mesh& mesh, LocalIndex cell);
 /// 3D: t1 = a x n/|a x n| with a = e_z if |n_z| < 0.9 else e_x, t2 = n x t1.
 std::array<Vector, 3> face_frame(const Vector& direction, int dim);
 
-/// For each cell face [cell * n_faces(shape) + local face] the index of the same face in the cell across it, -1 where
-/// there is none. Faces are the same if they have the same corners, so both sides of a split fracture count as free.
-/// Throws an Error if more than two cells share a face. Linear in the number of cells.
+/// Adjacent faces: [cell * n_faces(shape) + local face] index of the same face in the adjacent cell, -1 without one.
+/// Two faces are the same if they have the same corners. The sides of a split fracture therefore have no adjacent face.
+/// The cost is linear in the number of cells. Throws an Error if more than two cells share a face.
 std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh);
 
 }  // namespace sprekk::mesh

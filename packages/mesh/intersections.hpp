@@ -1,4 +1,4 @@
-// Where fractures meet in a mesh that is distributed, for pictures; hierarchy.hpp tells more of a mesh on one rank.
+// Intersections of fractures in a distributed mesh, for output. hierarchy.hpp contains more for a mesh on one rank.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,17 @@
 
 namespace sprekk::mesh {
 
-/// A point (2D) or an edge (3D) at which faces of several fractures end, or more than two of one: what MeshInfo counts.
+/// Point (2D) or edge (3D) at faces of several fractures, or of more than two faces of one fracture; as counted in
+/// MeshInfo.
 struct Intersection {
-  std::vector<GlobalIndex> nodes;  ///< its point, or the ends of its edge and at order 2 its middle; numbers of copies
-  std::vector<Vector> x;           ///< where they are, metre
-  std::vector<int> fractures;      ///< of each face that ends here, ascending
+  std::vector<GlobalIndex>
+      nodes;                   ///< point, or ends of the edge, at order 2 also its middle; set numbers of AlikeNodes
+  std::vector<Vector> x;       ///< coordinates of these nodes, m
+  std::vector<int> fractures;  ///< fracture of each face at the intersection, ascending
 };
 
-/// All intersections of the mesh, each once, on rank 0, by their nodes; none on other ranks. Their numbers, and so
-/// their order, are the same on any number of ranks. Collective.
+/// Returns all intersections of the mesh on rank 0, each once, ordered by their nodes; returns none on other ranks.
+/// Numbers and order are independent of the number of ranks. Collective.
 std::vector<Intersection> intersections(const Mesh& mesh);
 
 }  // namespace sprekk::mesh

@@ -1,4 +1,4 @@
-// What a gmsh file says: its numbers checked one by one, not yet a mesh.
+// Content of a gmsh file: every number is checked, but no mesh is built yet.
 #pragma once
 
 #include <map>
@@ -12,35 +12,36 @@
 
 namespace sprekk::mesh {
 
-/// A type of element that the reader knows.
+/// Element type supported by the reader.
 struct MshElementType {
-  int number;        ///< gmsh's
-  const char* name;  ///< with the number of nodes
+  int number;        ///< number in gmsh
+  const char* name;  ///< name with the number of nodes
   int dim, n_corners, n_nodes;
-  std::optional<Shape> shape;  ///< of elements that may be cells
+  std::optional<Shape> shape;  ///< for elements that may be cells
 };
 
-/// The element type with gmsh's number, or nullptr if the reader does not know it; its name, also if not.
+/// find_msh_element_type() returns the type with a gmsh number, or nullptr for unsupported types. msh_element_name()
+/// returns its name, also for unsupported types.
 const MshElementType* find_msh_element_type(int number);
 std::string msh_element_name(int number);
 
-/// For each node of a cell the place of that node in gmsh's element.
+/// Returns for each node of a cell its position in the gmsh element.
 std::vector<int> nodes_in_msh(Shape shape);
 
 /// Nodes, elements and physical groups of a gmsh file.
 struct MshFile {
   struct Element {
     const MshElementType* type;
-    GlobalIndex tag;         ///< gmsh's number
+    GlobalIndex tag;         ///< element number in gmsh
     int groups;              ///< index into group_sets
-    int entity;              ///< number of the geometrical entity; 0: not told
-    std::size_t first_node;  ///< in element_nodes
+    int entity;              ///< number of the geometrical entity; 0 if the file has none
+    std::size_t first_node;  ///< index into element_nodes
   };
-  /// A line of the section $Fractures, which Sprekk's own meshes of networks have and gmsh passes over: `group entity
-  /// "name"`, then pairs of `"entry" "value"` that the fracture has of its own.
+  /// Line of the section $Fractures: `group entity "name"`, then pairs `"entry" "value"` of the fracture. Sprekk writes
+  /// this section into meshes of networks; gmsh ignores it.
   struct Fracture {
-    int group;   ///< number of the physical group, the set
-    int entity;  ///< of the elements that are its faces; several fractures of one name are one
+    int group;   ///< number of the physical group, which is the set
+    int entity;  ///< entity of its faces; lines with equal names form one fracture
     std::string name;
     std::map<std::string, std::string> properties;
   };
@@ -52,16 +53,16 @@ struct MshFile {
   std::vector<GlobalIndex> element_nodes;    ///< indices into points, in gmsh's order
   std::vector<std::vector<int>> group_sets;  ///< numbers of physical groups
 
-  /// The group's name, or its number where it has none.
+  /// Name of the group, or its number as text if it has no name.
   std::string group_name(int dim, int number) const;
 };
 
-/// Reads a gmsh file of version 2.2 or 4.1, text or binary, from `text`; `file` names it in messages. What is allocated
-/// is proportional to the text. Throws an Error that names the file, the section, the line (binary: the byte), and the
-/// number of the node or element, if something is missing, is not a number, or cannot be. Not collective.
+/// Reads a gmsh file of version 2.2 or 4.1, text or binary, from `text`. Messages contain the name `file`. The
+/// allocated memory is proportional to the text. Throws an Error if something is missing, not a number, or impossible.
+/// The Error names the file, the section, the line (binary: the byte), and the node or element. Not collective.
 MshFile parse_msh_file(std::string_view text, const std::string& file);
 
-/// The same from the file at `path`; throws an Error, too, if there is none, or if it is of another kind or version.
+/// Reads the file at `path`, like parse_msh_file(). Throws an Error also for a missing file, another format or version.
 MshFile read_msh_file(const std::string& path);
 
 }  // namespace sprekk::mesh

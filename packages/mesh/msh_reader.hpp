@@ -1,4 +1,4 @@
-// Meshes from gmsh.
+// Reader of gmsh meshes.
 #pragma once
 
 #include <map>
@@ -11,29 +11,34 @@
 namespace sprekk::mesh {
 
 struct MshOptions {
-  /// The physical groups that are fractures, with what is known of their normals. In 2D these are groups of lines, in
-  /// 3D of triangles or quadrilaterals, between cells.
+  /// Physical groups that are fractures, with the orientation of their normals. The groups contain lines (2D) or
+  /// triangles or quadrilaterals (3D) between cells.
   std::map<std::string, Orientation> fractures;
-  /// Of the cells, 1 or 2; absent: as in the file. A mesh of order 1 is raised to 2 with straight edges, see
-  /// raise_order().
+  /// Order of the cells, 1 or 2; absent: as in the file. Cells of order 1 are raised to order 2 with straight edges,
+  /// see raise_order().
   std::optional<int> order;
 };
 
-/// The mesh in a gmsh file of version 2.2 or 4.1, text or binary, with cells of one shape, of order 1 or 2.
+/// Reads the mesh in a gmsh file of version 2.2 or 4.1, text or binary. All cells must have one shape, of order 1 or 2.
 ///
-/// Elements of the highest dimension are the cells; the physical groups of that dimension are the regions ("bulk" if
-/// there is none), those of one dimension less are the boundaries and, if `options` names them, the fractures, along
-/// which the mesh is split(). A group without a name is called by its number. 2D meshes lie in a plane z = constant,
-/// which is dropped. Nodes of no cell are dropped; nodes and cells keep the order of the file. Cells that are inside
-/// out are mirrored.
+/// * Cells: elements of the highest dimension. Cells with reversed orientation are mirrored.
+/// * Regions: physical groups of cells; "bulk" if there is none.
+/// * Boundaries: physical groups of one dimension less. Those named in `options` are fractures, and the mesh is split()
+///   along them.
+/// * Names: groups without a name have their number as name.
+/// * Nodes: nodes without a cell are dropped. Nodes and cells remain in the order of the file. 2D meshes lie in a plane
+///   z = constant; z is dropped.
 ///
-/// Throws an Error that names the file and the line, element or group if the file is damaged or of another version, has
-/// elements of another kind, or is no conforming mesh: a cell without volume, twisted or twice there, cells that
-/// overlap or touch without sharing nodes, a boundary inside of the mesh, a fracture that is unknown, on the boundary
-/// or not made of cell faces, or if `options` ask for order 1 of cells of order 2. Not collective.
+/// Throws an Error that names the file and the line, element or group, in these cases:
+/// * the file is damaged, has another version, or contains unsupported elements;
+/// * a cell has no volume, is twisted or is repeated; cells overlap, or touch without common nodes;
+/// * a boundary lies inside the mesh; a fracture is unknown, on the boundary, or not made of cell faces;
+/// * `options` require order 1 for cells of order 2.
+///
+/// Not collective.
 GlobalMesh read_msh(const std::string& path, const MshOptions& options = {});
 
-/// The same from the content of the file; `file` names it in messages.
+/// Reads the mesh from the content of a file, like read_msh(); messages contain the name `file`.
 GlobalMesh parse_msh(std::string_view text, const std::string& file, const MshOptions& options = {});
 
 }  // namespace sprekk::mesh

@@ -1,4 +1,4 @@
-// Words and numbers of a gmsh file, as text or binary, read strictly.
+// Strict reader of words and numbers of a gmsh file, text or binary.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 
 namespace sprekk::mesh {
 
-/// At most 40 characters of what a file holds, for a message.
+/// Returns up to 40 characters of the content of a file, for messages; non-printable characters become "?".
 inline std::string printable(std::string_view text) {
   std::string result(text.substr(0, 40));
   for (char& c : result)
@@ -24,8 +24,8 @@ inline std::string printable(std::string_view text) {
   return result + (text.size() > 40 ? "..." : "");
 }
 
-/// Reads words, lines and numbers, the latter as text or binary, from a text that outlives it. Its errors name the
-/// file, the section, the line (binary: the byte) and the node or element.
+/// Reads words, lines and numbers from a text, which must outlive the scanner. Numbers are text or binary. Throws
+/// Errors that name the file, the section, the line (binary: the byte) and the node or element.
 class MshScanner {
  public:
   MshScanner(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -39,7 +39,7 @@ class MshScanner {
     section_ = section;
     about("", 0);
   }
-  /// What is being read, for messages.
+  /// Sets the item for messages: kind and number of the node or element.
   void about(const char* kind, GlobalIndex tag) {
     kind_ = kind;
     tag_ = tag;
@@ -58,7 +58,7 @@ class MshScanner {
     return at_ == text_.size();
   }
 
-  /// What is left of the line, without blanks at its ends.
+  /// Reads the rest of the line, without blanks at its ends.
   std::string_view line() {
     start_ = at_;
     const auto end = std::min(text_.find('\n', at_), text_.size());
@@ -80,7 +80,7 @@ class MshScanner {
     return *value;
   }
 
-  /// An integer of four bytes; as text within the same bounds.
+  /// Reads an integer of four bytes; text integers must have the same range.
   int integer(const char* what) {
     const GlobalIndex value = is_binary_ ? raw<std::int32_t>(what) : text_integer(what);
     constexpr GlobalIndex largest = std::numeric_limits<int>::max();
@@ -88,25 +88,26 @@ class MshScanner {
     return static_cast<int>(value);
   }
 
-  /// An integer of eight bytes, in binary files of version 2.2 of four.
+  /// Reads an integer of eight bytes, or of four bytes in binary files of version 2.2.
   GlobalIndex long_integer(const char* what) {
     if (!is_binary_) return text_integer(what);
     return has_wide_tags_ ? static_cast<GlobalIndex>(raw<std::uint64_t>(what)) : raw<std::int32_t>(what);
   }
 
-  /// The number of a node or element, which is positive.
+  /// Reads the number of a node or element. It must be positive.
   GlobalIndex tag(const char* what) {
     const auto value = long_integer(what);
     if (value <= 0) fail(fmt::format("{} is {}, must be positive", what, value));
     return value;
   }
 
-  /// How many things of at least so many numbers each follow: no more than the rest of the file can hold.
+  /// Reads a count of items with at least `n_numbers` numbers each. Throws an Error if the rest of the file cannot
+  /// contain them.
   GlobalIndex count(const char* what, GlobalIndex n_numbers = 1) {
     return checked_count(what, long_integer(what), n_numbers);
   }
 
-  /// The same where the count is text in a line of its own also if what follows is binary.
+  /// Reads a count like count(), from text on a separate line, also in binary files.
   GlobalIndex text_count(const char* what, GlobalIndex n_numbers) {
     const auto value = text_integer(what);
     if (is_binary_ && !line().empty()) fail(fmt::format("the line with the number of {} goes on", what));
@@ -127,7 +128,7 @@ class MshScanner {
     return value;
   }
 
-  /// Passes over a floating-point number that nobody needs, whatever it is.
+  /// Skips a floating-point number of any value.
   void skip_number(const char* what) {
     if (is_binary_)
       raw<double>(what);
@@ -150,7 +151,7 @@ class MshScanner {
   std::string file_, section_;
   const char* kind_ = "";
   GlobalIndex tag_ = 0;
-  std::size_t at_ = 0, start_ = 0;  ///< of the next and of the last thing read
+  std::size_t at_ = 0, start_ = 0;  ///< positions of the next item and of the last item read
   bool is_binary_ = false, has_wide_tags_ = false;
 
   GlobalIndex checked_count(const char* what, GlobalIndex value, GlobalIndex n_numbers) const {

@@ -1,16 +1,16 @@
-// Numbers the faces of cells, for fields that live there.
+// Numbers of the facets of cells and fracture faces, for fields with unknowns on facets.
 #pragma once
 
 #include "mesh/mesh.hpp"
 
 namespace sprekk::mesh {
 
-/// The numbers of the ridges of local fracture faces, [face * n_face_corners(shape) + k]: see Facets; 0, 1, ... over
-/// all ranks, the same for any partition. Collective.
+/// Returns the global numbers of the ridges of local fracture faces, [face * n_face_corners(shape) + k]. They are
+/// consecutive from 0 over all ranks and independent of the partition; see Facets. Collective.
 std::vector<GlobalIndex> ridge_ids(const Mesh& mesh);
 
-/// The mesh with its facets. Cells across a tied (periodic) side share a facet, as those across a fracture do.
-/// Throws an Error where a tied side has so few cells that its faces, or their edges, have the same corners.
+/// Returns the mesh with its facets. Cells on tied (periodic) sides share a facet, as do cells across a fracture.
+/// Throws an Error if a periodic direction has too few cells, so that different faces or edges have the same corners.
 /// Collective.
 RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh);
 

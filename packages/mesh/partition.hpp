@@ -1,4 +1,4 @@
-// Which rank owns which cell.
+// Partition of the cells among the ranks.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace sprekk::mesh {
 
-/// The part [0, n_parts) of each cell, by METIS with fixed seeds. The graph has an edge between cells that share a
-/// face, and a heavier one across every fracture face, so that its two cells tend to stay together. Balanced are the
-/// number of cells, which comes first, and as far as that permits the number of fracture faces, each counted at its
-/// minus cell. No part is empty unless there are fewer cells than parts. Throws an Error if METIS fails.
+/// Returns the part in [0, n_parts) of each cell, from METIS with fixed seeds. Graph edges connect cells with a common
+/// face. Edges across fracture faces have a larger weight, so their cells tend to remain together. The partition
+/// balances the number of cells and, with lower priority, the number of fracture faces, counted at their minus cells.
+/// No part is empty, unless there are fewer cells than parts. Throws an Error if METIS fails. Not collective.
 std::vector<int> partition(const GlobalMesh& mesh, int n_parts);
 
-/// How good a partition is. `part` is in [0, n_parts) for each cell.
+/// Evaluates a partition. `part` contains for each cell a number in [0, n_parts).
 PartitionReport report(const GlobalMesh& mesh, const std::vector<int>& part, int n_parts);
 
 }  // namespace sprekk::mesh

@@ -1,19 +1,19 @@
-// From cells of order 1 to cells of order 2.
+// Cells of order 2 from cells of order 1.
 #pragma once
 
 #include "mesh/mesh.hpp"
 
 namespace sprekk::mesh {
 
-/// The mesh with nodes added in the middle of edges (and of the faces and insides of quadrilaterals and hexahedra), so
-/// that its cells keep their straight sides. Nodes keep their numbers; new ones follow. `mesh` has order 1 and is not
-/// yet split: splitting treats the new nodes like all others, so that an edge between two tip nodes that lies in a
-/// fracture opens. Linear in the number of cells.
+/// Adds nodes at midpoints of edges, and of faces and interiors of quadrilaterals and hexahedra; edges remain straight.
+/// Old nodes preserve their numbers, new nodes follow. `mesh` must have order 1 and must not be split yet. A later
+/// split treats new nodes like all others, so an edge between two tip nodes inside a fracture opens. The cost is linear
+/// in the number of cells. Throws an Error for other meshes. Not collective.
 GlobalMesh raise_order(GlobalMesh mesh);
 
-/// The same of a distributed mesh, which is split: places in fractures get a node for each set of cells that faces
-/// connect which are in no fracture. Cells and their ghosts stay; the numbers of nodes do not depend on the ranks.
-/// Throws an Error if there are tied nodes, or crack tips that are marked. Collective.
+/// Raises the order of a distributed, split mesh. In fractures, each set of cells connected through faces outside
+/// fractures gets its own node. Cells and ghosts are unchanged; node numbers are independent of the distribution.
+/// Throws an Error for tied nodes or marked crack tips. Collective.
 RCP<Mesh> raise_order(const Mesh& mesh);
 
 }  // namespace sprekk::mesh

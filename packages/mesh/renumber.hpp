@@ -1,15 +1,15 @@
-// Renumbering; at random to check that results do not depend on it.
+// Renumbering of meshes; a random order tests that results are independent of it.
 #pragma once
 
 #include "mesh/mesh.hpp"
 
 namespace sprekk::mesh {
 
-/// The same mesh with node i called new_node[i] and cell c called new_cell[c]. `mesh` has no tied nodes.
+/// Returns the mesh with node i renumbered to new_node[i] and cell c to new_cell[c]. `mesh` has no tied nodes.
 GlobalMesh permuted(const GlobalMesh& mesh, const std::vector<GlobalIndex>& new_node,
                     const std::vector<GlobalIndex>& new_cell);
 
-/// The same mesh with its nodes and cells in an order drawn with `seed`; the same on every platform.
+/// Returns the mesh with a random order of nodes and cells for `seed`, identical on every platform.
 GlobalMesh renumbered(const GlobalMesh& mesh, unsigned seed);
 
 }  // namespace sprekk::mesh

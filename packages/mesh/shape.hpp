@@ -1,4 +1,4 @@
-// Reference cells: node and face numbering. Coordinates and numbering follow VTK, so that output needs no permutation.
+// Reference cells: numbers of nodes and faces. Coordinates and numbers follow VTK, so output needs no permutation.
 #pragma once
 
 #include <array>
@@ -6,7 +6,8 @@
 
 namespace sprekk::mesh {
 
-/// Cells of order 1, and of order 2 with nodes on edges (and on faces and inside of quadrilaterals and hexahedra).
+/// Cells of order 1 and 2. Order 2 adds nodes on edges, and on faces and in the interior of quadrilaterals and
+/// hexahedra.
 enum class Shape {
   triangle,
   quadrilateral,
@@ -19,7 +20,7 @@ enum class Shape {
 };
 
 constexpr int order(Shape s) { return s < Shape::triangle6 ? 1 : 2; }
-/// The cell of order 1 with the same corners, and that of order 2.
+/// linear() and quadratic() return the cell of order 1 and 2 with the same corners.
 constexpr Shape linear(Shape s) { return order(s) == 1 ? s : static_cast<Shape>(static_cast<int>(s) - 4); }
 constexpr Shape quadratic(Shape s) { return order(s) == 2 ? s : static_cast<Shape>(static_cast<int>(s) + 4); }
 constexpr bool is_simplex(Shape s) { return linear(s) == Shape::triangle || linear(s) == Shape::tetrahedron; }
@@ -38,7 +39,7 @@ constexpr int n_face_nodes(Shape s) {
   return n[static_cast<int>(s)];
 }
 constexpr int max_face_nodes = 9;
-/// Of order 1, of cells in 3D.
+/// Shape of order 1 of the faces of 3D cells.
 constexpr Shape face_shape(Shape s) { return is_simplex(s) ? Shape::triangle : Shape::quadrilateral; }
 
 using FaceNodes = std::array<std::array<int, max_face_nodes>, 6>;
@@ -80,13 +81,13 @@ inline constexpr std::array<FaceNodes, 8> all_face_nodes = {
 
 }  // namespace detail
 
-/// Local nodes of each face: its corners in order around it (seen from outside counter-clockwise in 3D), then the nodes
-/// on its edges in the same order, then the one inside; unused entries are -1. Simplex face i is the face opposite to
-/// node (i + 2) % 3 in 2D (edge i, i+1) and opposite to node i in 3D; hexahedron faces are x-, x+, y-, y+, z-, z+.
+/// Returns the local nodes of each face [face][k]: corners, then edge nodes in the same order, then the interior node;
+/// unused entries are -1. Corners are in order around the face, in 3D counter-clockwise seen from outside. Simplices:
+/// face i is opposite to node (i + 2) % 3 in 2D (edge i, i+1) and to node i in 3D. Hexahedra: x-, x+, y-, y+, z-, z+.
 constexpr const FaceNodes& face_nodes(Shape s) { return detail::all_face_nodes[static_cast<int>(s)]; }
 
-/// f(std::integral_constant<Shape, c>) for the cell c of order 1 with the same corners: for code that depends on
-/// corners and faces alone, which is then compiled for four cells instead of eight.
+/// Calls f(std::integral_constant<Shape, c>) with the cell c of order 1 with the same corners. Use it for code that
+/// depends on corners and faces only: it is compiled for four cells instead of eight.
 template <class F>
 auto for_corners(Shape s, const F& f) {
   switch (linear(s)) {
@@ -101,8 +102,8 @@ auto for_corners(Shape s, const F& f) {
   }
 }
 
-/// The same for code that depends on the corners of faces alone: a triangle for all cells in 2D, a tetrahedron where
-/// faces are triangles, a hexahedron where they are quadrilaterals.
+/// Calls f like for_corners(), for code that depends only on the corners of faces. The shape is a triangle for all 2D
+/// cells, a tetrahedron for triangular faces, a hexahedron for quadrilateral faces.
 template <class F>
 auto for_face_corners(Shape s, const F& f) {
   if (dimension(s) == 2) return f(std::integral_constant<Shape, Shape::triangle>());
@@ -110,7 +111,7 @@ auto for_face_corners(Shape s, const F& f) {
   return f(std::integral_constant<Shape, Shape::hexahedron>());
 }
 
-/// f(std::integral_constant<Shape, s>) for a shape that is known at run time only.
+/// Calls f(std::integral_constant<Shape, s>) for a shape known only at run time.
 template <class F>
 auto for_shape(Shape s, const F& f) {
   if (order(s) == 1) return for_corners(s, f);

@@ -1,4 +1,4 @@
-// Turns marked faces of a mesh into fractures: splits nodes and orients the faces.
+// Fractures from marked faces: splitting of nodes, orientation of faces.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace sprekk::mesh {
 
-/// A cell's face that belongs to a fracture; either of its two cells may name it.
+/// Face of a cell on a fracture. It may be given from either of its two cells.
 struct MarkedFace {
   int fracture;  ///< index into fracture_names
   GlobalIndex cell;
@@ -16,36 +16,39 @@ struct MarkedFace {
   int single = 0;  ///< index into single_fractures
 };
 
-/// What the user says about a fracture's normal.
+/// User input for the normal of a fracture.
 struct Orientation {
-  std::optional<Vector> reference;  ///< the normal has a positive product with it
-  bool swap_sides = false;          ///< reverse the normal that the rule gives
+  std::optional<Vector> reference;  ///< the product of the normal with this vector is positive
+  bool swap_sides = false;          ///< reverse the normal given by the rule
 };
 
-/// The mesh with its nodes split along the marked faces, and with fracture_faces.
+/// Splits the nodes of a mesh along the marked faces and fills fracture_faces. Not collective.
 ///
-/// Around each node the cells are connected through unmarked faces. Each connected set of cells has its own copy of the
-/// node: the set of the lowest cell keeps the old number, copies are appended. So tips stay whole, a crossing of two
-/// fractures has four copies, a T three. parent_node keeps the old number of each node.
+/// The cells at each node are connected through unmarked faces. Each connected set of cells gets its own copy of the
+/// node. The set with the lowest cell takes the old number; copies are appended. Hence tips are not split, a crossing
+/// of two fractures has four copies, and a T three. parent_node stores the original of each node.
 ///
-/// `mesh` has conforming cells of positive volume, fracture_names, and no fracture faces; without single_fractures,
-/// each fracture becomes one. fracture_faces come in the order of `marked`, without repetitions, oriented by orient().
-/// `orientations` is empty or has one entry per fracture. Throws an Error if a face belongs to two fractures or lies on
-/// the boundary, or if a fracture has no face.
+/// `mesh` must have conforming cells of positive volume, fracture_names, and no fracture faces. Without
+/// single_fractures, each fracture becomes one single fracture. fracture_faces are in the order of `marked`, without
+/// repetition, oriented by orient(). `orientations` is empty or has one entry per fracture. Throws an Error if a face
+/// belongs to two fractures or lies on the boundary, or if a fracture has no face.
 GlobalMesh split(GlobalMesh mesh, const std::vector<MarkedFace>& marked,
                  const std::vector<Orientation>& orientations = {});
 
-/// The mesh with its nodes split along the fracture faces that it has already, each with its cells and sides. It is not
-/// yet split otherwise.
+/// Splits the nodes of a mesh along its fracture faces, whose cells and sides are already set. `mesh` must not be split
+/// yet.
 GlobalMesh split_along_faces(GlobalMesh mesh);
 
-/// Swaps the sides of fracture faces such that normals (from minus to plus) are consistent. `mesh` is not yet split.
+/// Swaps the sides of fracture faces for consistent normals (from minus to plus). `mesh` is not split yet.
 ///
-/// Normals are made consistent by walking over edges (2D: nodes) that exactly two faces of a fracture share. Each
-/// connected piece then gets its sign from its area-weighted normal: a positive product with the reference direction;
-/// without one, the last component (z, y, x) that is not zero relative to the area (1e-8) is positive; a piece whose
-/// area-weighted normal vanishes points outward. swap_sides reverses the result. Throws an Error if a piece is
-/// one-sided or its normal is perpendicular (1e-8) to the reference direction.
+/// Faces are neighbours if exactly two faces of a fracture share an edge (2D: a node). Normals are propagated between
+/// neighbours. The sign of each connected piece follows from its area-weighted normal, by the first rule that applies:
+/// * with a reference direction, the product with it is positive;
+/// * the last component (z, y, x) larger than 1e-8 times the area is positive;
+/// * if the area-weighted normal vanishes, the normals point outward.
+///
+/// swap_sides reverses the result. Throws an Error if a piece is one-sided, or if its normal is perpendicular (to 1e-8)
+/// to the reference direction.
 void orient(const GlobalMesh& mesh, std::vector<GlobalMesh::FractureFace>& faces,
             const std::vector<Orientation>& orientations);
 

@@ -1,4 +1,4 @@
-// Crack tips: where fractures end inside of the rock.
+// Crack tips: ends of fractures inside the rock.
 #pragma once
 
 #include <vector>
@@ -7,21 +7,22 @@
 
 namespace sprekk::mesh {
 
-/// Which nodes are tips, [node] 1 or 0: the corners of fracture faces that both sides of the face share, so that the
-/// displacement cannot jump there. In 3D they line the fracture's front. Nodes tied to a tip are tips. `mesh` is split;
-/// not collective.
+/// Marks tips: [node] 1 for a tip, otherwise 0. Tips are corners of fracture faces common to both sides of the face, so
+/// the displacement jump is zero there. In 3D they form the front of the fracture. Nodes tied to a tip are tips. `mesh`
+/// is split. Not collective.
 std::vector<char> tip_nodes(const GlobalMesh& mesh);
 
-/// The same of a rank's part, ghosts included. `mesh` has no tied nodes. Collective.
+/// Marks tips of a rank's part, ghosts included. `mesh` has no tied nodes. Collective.
 std::vector<char> tip_nodes(const Mesh& mesh);
 
-/// Sets mesh.tip, for the enrichment of the displacement around tips (order 1): all tip nodes but so many that no face
-/// of a cell has tips only, for a function that is zero all over a face has no square-integrable inverse root. Of such
-/// a face those nodes are left out that touch the fewest fracture faces: the corners of a fracture.
+/// Sets mesh.tip for the enrichment of the displacement at tips (order 1). It contains the tip nodes, except some on
+/// cell faces with only tip corners. There the distance function would vanish on the whole face, and its inverse square
+/// root would not be square-integrable. On such a face, the tips with the fewest fracture faces (corners of a fracture)
+/// are removed.
 void mark_tips(GlobalMesh& mesh);
 
-/// The same of every rank's part, with the numbers of enriched nodes, which do not depend on the ranks. `mesh` has no
-/// tied nodes. Collective.
+/// Sets mesh.tip and the numbers of enriched nodes of a rank's part. The numbers are independent of the distribution.
+/// `mesh` has no tied nodes. Collective.
 void mark_tips(Mesh& mesh);
 
 }  // namespace sprekk::mesh

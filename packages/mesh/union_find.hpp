@@ -1,4 +1,4 @@
-// Sets that grow together.
+// Union-find structure.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace sprekk::mesh {
 
-/// The numbers 0 ... n-1 in sets, at first each in its own; a set is known by its lowest number.
+/// Disjoint sets of the numbers 0 ... n-1, initially of one number each. The lowest number represents a set.
 class UnionFind {
  public:
   explicit UnionFind(GlobalIndex n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), GlobalIndex{0}); }

@@ -1,4 +1,4 @@
-// Excavation: a mesh without the cells of some of its regions.
+// Excavation: mesh without the cells of some regions.
 #pragma once
 
 #include <string>
@@ -8,12 +8,16 @@
 
 namespace sprekk::mesh {
 
-/// The part of a mesh that is left without the cells of regions, each rank's cells staying where they are. Walls, where
-/// cells are gone on the other side of a face or of a fracture face, are boundary faces of a boundary called like the
-/// region, which is there even if it has no face. Fracture faces with a side in a region are gone, and so are nodes
-/// without cells. Entities are numbered anew in their order; Mesh::origin has the numbers that they had. With facets
-/// where `whole` has some; `whole` itself if there is no region. Error: a region is not there, no cell is left, or the
-/// mesh has periodic sides. Collective.
+/// Removes the cells of the given regions from a mesh; the other cells remain on their ranks.
+///
+/// * Walls: faces of remaining cells whose opposite cell was removed become boundary faces, also across fractures.
+///   Their boundary has the name of the region and exists even without faces.
+/// * Fracture faces with a removed cell, and nodes without cells, are removed.
+/// * Numbers: entities are renumbered in their order; Mesh::origin contains the previous numbers.
+/// * Facets: present if `whole` has them.
+///
+/// Returns `whole` if `regions` is empty. Throws an Error if a region does not exist, no cell remains, or the mesh has
+/// periodic sides. Collective.
 RCP<const Mesh> without_regions(const RCP<const Mesh>& whole, const std::vector<std::string>& regions);
 
 }  // namespace sprekk::mesh
