@@ -1,4 +1,4 @@
-// The section Accuracy of a scene: which numbers a run is to reach, and with what error.
+// Section Accuracy of a scene: quantities of interest and their tolerances.
 #pragma once
 
 #include "base/types.hpp"
@@ -15,28 +15,28 @@ class Section;
 
 namespace sprekk::model {
 
-/// A number of the last state.
-struct Quantity : physics::Functional {    ///< `what`: of a physics' quantities()
-  std::string component = "x";             ///< of a reaction
-  std::optional<Real> relative, absolute;  ///< the error that is asked for, the larger of both
+/// Quantity of interest in the last state.
+struct Quantity : physics::Functional {    ///< `what`: one of the quantities() of a physics
+  std::string component = "x";             ///< component of a reaction
+  std::optional<Real> relative, absolute;  ///< tolerances; the larger one applies
 
   std::string unit(int dim) const;
-  /// A state's outputs or reactions tell its value, without an estimate.
+  /// Returns true if the value is taken from outputs or reactions, without an estimate.
   bool is_of_outputs() const;
-  /// It is an energy's root.
+  /// Returns true for square roots of energies, which cover the whole domain.
   bool of_all() const { return what == "stress" || what == "flux"; }
-  /// `slip of "fault 3"`.
+  /// Text `slip of "fault 3"`.
   std::string title() const;
-  /// The error that is asked for at a value; 0 where that is 0 and nothing else is said.
+  /// Tolerance at a value, in the unit of the quantity. It is 0 if the value is 0 and there is no absolute tolerance.
   Real asked(Real value) const;
   void describe(base::Section& section);
 };
 
 struct Accuracy {
-  std::map<std::string, Quantity> quantities;  ///< by names of the user
-  long long cells = 1000000;                   ///< no mesh has more
-  std::optional<Real> seconds;                 ///< of the wall clock, in all
-  std::optional<Real> memory;                  ///< bytes of all ranks
+  std::map<std::string, Quantity> quantities;  ///< by user-defined names
+  long long cells = 1000000;                   ///< upper limit of the cells of a mesh
+  std::optional<Real> seconds;                 ///< limit of the total wall-clock time, s
+  std::optional<Real> memory;                  ///< memory limit over all ranks, bytes
 
   void describe(base::Section& section);
 };

@@ -1,4 +1,5 @@
-// How a run reaches what the section Accuracy asks for: it runs on finer and finer meshes, and says how far it came.
+// Adaptive refinement to the tolerances of the section Accuracy: repeated runs on finer meshes, and a report of the
+// result.
 #pragma once
 
 #include "model/goals.hpp"
@@ -7,46 +8,47 @@
 
 namespace sprekk::model {
 
-/// What is known of the runs so far. All members are collective unless they return stored data.
+/// Data of the runs so far. All members are collective unless they return stored data.
 class Adaptation {
  public:
-  /// What is told of a quantity.
+  /// Report on one quantity.
   struct Verdict {
     std::string name, title, unit;
     Real value, error;  ///< infinite: unknown
-    Real space, time;   ///< of the error: by the mesh, by steps
+    Real space, time;   ///< parts of the error due to the mesh and to the time steps
     Real asked;
     bool reached;
-    /// `slip of "fault": 0.00321 m +- 2.1e-05 (0.65 %, asked 1 %), space 1.8e-05, time 3e-06`
+    /// Text `slip of "fault": 0.00321 m +- 2.1e-05 (0.65 %, asked 1 %), space 1.8e-05, time 3e-06`.
     std::string line() const;
   };
 
   Adaptation() : bisection_(std::make_shared<std::optional<mesh::Bisection>>()) {}
 
-  /// The scene whose model has the mesh and the steps as they are by now. At first steps are halved, on the mesh of the
-  /// scene, until by that quantities change by less than 0.15 of the error that is asked for, or six times.
+  /// Sets the present mesh and time steps in `scene`, from which the next model is built. The first call chooses the
+  /// steps on the mesh of the scene. It halves them until quantities change by less than 0.15 of their tolerance, or
+  /// six times.
   void prepare(Scene& scene, RCP<const Comm> comm);
 
-  /// Judges a run that has reached its end. A mesh is only trusted beside an earlier one: the estimate counts, or what
-  /// the change of the value since then tells, if that is more.
+  /// Evaluates a completed run. The spatial error of a quantity is the maximum of its estimate and of bounds from the
+  /// previous mesh, such as the change of the value. Tolerances can be met from the second mesh on.
   void judge(const Model& model, const Goals& goals);
-  /// Whether there is to be another run; if not, why.
+  /// Returns true if another run is needed; otherwise why() contains the reason.
   bool goes_on() const { return why_.empty(); }
   const std::string& why() const { return why_; }
   bool reached() const;
   bool is_first() const { return runs_.empty(); }
   const std::vector<Verdict>& verdicts() const { return verdicts_; }
-  /// What results.json has of it. Stored data.
+  /// Entry "accuracy" of results.json. Stored data.
   nlohmann::json summary() const;
 
-  /// Halves the cells that matter most, as judge() has found them, once the model is not needed any more.
+  /// Bisects the cells selected by judge(). Call it after the last use of the model.
   void refine(const Comm& comm);
 
  private:
-  /// What a run gave.
+  /// Results of one run.
   struct Run {
     GlobalIndex cells;
-    Real seconds;  ///< since the first began
+    Real seconds;  ///< since the first run began
     std::map<std::string, Goals::Estimate> estimates;
   };
 
@@ -57,11 +59,11 @@ class Adaptation {
 
   std::shared_ptr<std::optional<mesh::Bisection>> bisection_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::optional<Time> time_;                 // that was chosen
-  std::map<std::string, Real> time_errors_;  // by quantity; empty: a step failed
+  std::optional<Time> time_;                 // chosen time steps
+  std::map<std::string, Real> time_errors_;  // by quantity; empty if a step failed
   std::vector<Run> runs_;
   std::vector<Verdict> verdicts_;
-  std::vector<GlobalIndex> cells_;  // to be halved, of all ranks
+  std::vector<GlobalIndex> cells_;  // cells to be bisected, of all ranks
   int dim_ = 0, order_ = 0;         // of the mesh
   std::string why_;
 };

@@ -1,4 +1,4 @@
-// Which changes of its scene a live model can follow, and how its state gets to the changed equations.
+// Changes of the scene during a run, and transfer of the state to the changed equations.
 #pragma once
 
 #include "assembly/system.hpp"
@@ -9,13 +9,14 @@
 
 namespace sprekk::model {
 
-/// Whether both say the same of all but stages, results and what opens messages.
+/// Returns true if both scenes are equal except for stages, results and the prefix of messages.
 bool same_entries(const Scene& before, const Scene& after);
 
-/// Why a state of one scene means nothing in the other, a line each; empty: it goes on there.
+/// Returns the reasons why a state of one scene is invalid in the other, one line each. An empty list permits the
+/// change.
 std::vector<std::string> refused_changes(const Scene& before, const Scene& after);
 
-/// What modules keep a state in: fields and histories with their entities and components.
+/// Storage of the state in modules: fields and histories with their entities and components.
 struct Storage {
   struct Place {
     fields::Entity entity;
@@ -25,14 +26,15 @@ struct Storage {
   std::map<std::string, Place> fields, histories;
 };
 
-/// Of modules before they are bound; those of a System tell the same. Collective.
+/// Returns the storage of modules before they are bound; a System of these modules has the same. Collective.
 Storage storage_of(const std::vector<std::unique_ptr<assembly::Module>>& modules, const mesh::Mesh& mesh);
 
-/// Why a state cannot go from one storage to another, a line each. Histories may begin, and fields at crack tips end.
+/// Returns the reasons why a state cannot be transferred, one line each. New histories and the removal of fields at
+/// crack tips are permitted.
 std::vector<std::string> misfits(const Storage& before, const Storage& after);
 
-/// Unknowns and histories of one system, by the numbers of their entities, in another; the meshes of both are parts of
-/// `whole`. What is new there is as it is at the start. The next step is one of implicit Euler. Collective.
+/// Copies unknowns and histories between two systems by the numbers of their entities. The meshes of both are parts of
+/// `whole`. New entries have their initial values. The next step is an implicit Euler step. Collective.
 void carry_over(const mesh::Mesh& whole, assembly::System& from, const fields::BlockVector& x, assembly::System& to,
                 fields::BlockVector& carried);
 

@@ -1,4 +1,4 @@
-// The checkpoints of a run: when one is written, and how a run goes on from one.
+// Checkpoints of a run: when they are written, and how a run is restarted.
 #pragma once
 
 #include "base/log.hpp"
@@ -14,16 +14,16 @@ class Checkpointing {
  public:
   Checkpointing(Model& model, Steps& steps, const std::string& directory, base::Log& log);
 
-  /// Removes the checkpoints of an earlier run.
+  /// Removes the checkpoints of a previous run.
   void start_anew() { checkpoints_.clear(); }
-  /// Brings the model to the last checkpoint that is undamaged, warns of damaged ones, and returns what the results
-  /// were. Error: there is none, or it is of another scene.
+  /// Restores the model from the last undamaged checkpoint and warns of damaged ones. Returns the results up to this
+  /// checkpoint. Throws an Error if there is no checkpoint, or if it belongs to another scene.
   EarlierResults restore();
 
-  /// Writes a checkpoint if Output of the scene asks for one after this step. If it cannot be written, warns, and the
-  /// run goes on.
+  /// Writes a checkpoint after a step if required by the section Output. If writing fails, it only warns, and the run
+  /// continues.
   void after_step(const Results& results, bool last);
-  /// Writes a checkpoint of the model after its last step, if the scene asks for any and there is none yet.
+  /// Writes a checkpoint after the last step if the scene has checkpoints and this state has none.
   void at_the_end(const Results& results);
 
  private:

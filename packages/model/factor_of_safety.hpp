@@ -1,4 +1,4 @@
-// By how much the joints of a scene may lose strength before it has no equilibrium.
+// Factor of safety by reduction of the joint strength.
 #pragma once
 
 #include "model/scene.hpp"
@@ -12,31 +12,32 @@ namespace sprekk::model {
 struct SafetyOptions {
   std::string scene;                   ///< path of the XML file
   std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
-  Real tolerance = 1e-3;               ///< of the factor, relative
-  Real first = 1;                      ///< the factor that the scene is run with to its end
-  Real most = 100;                     ///< that is of interest
+  Real tolerance = 1e-3;               ///< relative tolerance of the factor
+  Real first = 1;                      ///< factor for the complete run of the scene
+  Real most = 100;                     ///< largest factor to be tested
 };
 
-/// A factor that was tried.
+/// Trial with one factor.
 struct Reduction {
   Real factor;
-  bool stands;         ///< there is an equilibrium
+  bool stands;         ///< an equilibrium exists
   int iterations;      ///< of Newton's method
-  std::string reason;  ///< why not
+  std::string reason;  ///< reason for a missing equilibrium
 };
 
 struct FactorOfSafety {
-  Real least;                ///< with which there is an equilibrium
-  std::optional<Real> lost;  ///< with which none was found, at most (1 + tolerance) least; absent: `most` stands
-  std::vector<Reduction> reductions;  ///< in the order in which they were tried
+  Real least;  ///< largest factor with an equilibrium
+  std::optional<Real>
+      lost;  ///< least factor without one, at most (1 + tolerance) least; absent: `most` has an equilibrium
+  std::vector<Reduction> reductions;  ///< in the order of the trials
   std::vector<std::string> states;    ///< digest() of the state at `least`
 };
 
-/// Runs the scene to its end, with the strength of all joints divided by the factor F = `first`; then lets F grow, at
-/// the loads of the end, and bisects between the largest F with an equilibrium and the least one with none
-/// (Zienkiewicz, Humpheson and Lewis 1975). Every trial goes on from the state of the largest F that stands. `tell` is
-/// called after each one. Error: a scene without joints, with balances of rates, or that has no equilibrium
-/// with F = `first`. Collective.
+/// Runs the scene to its end with the strength of all joints divided by the factor F = `first`. Then F is increased at
+/// the final loads, followed by bisection between the largest F with an equilibrium and the smallest without one
+/// (Zienkiewicz, Humpheson and Lewis 1975). Every trial starts from the state at the largest F with an equilibrium.
+/// `tell` is called after each trial. Throws an Error if the scene has no joints, has balances of rates, or has no
+/// equilibrium for F = `first`. Collective.
 FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> comm,
                                 const std::function<void(const Reduction&)>& tell = {});
 

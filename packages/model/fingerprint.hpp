@@ -1,4 +1,4 @@
-// By what a checkpoint is known to belong to a scene.
+// Fingerprint of a scene, for the check of checkpoints.
 #pragma once
 
 #include "assembly/system.hpp"
@@ -8,12 +8,12 @@
 
 namespace sprekk::model {
 
-/// What a state means something for: the mesh, on any number of ranks; the unknowns and histories; the modules with
-/// their fingerprints; the beginning of time; all sections of the scene but Time, Solver, Output, Probes and Stages,
-/// whose part up to now the other sections have in them. Collective.
+/// Returns the data on which the meaning of a state depends. These are the mesh (for any number of ranks), unknowns and
+/// histories, modules with their fingerprints, the start time, and sections of the scene. The sections Time, Solver,
+/// Output, Probes and Stages are excluded; the other sections already contain the stages up to now. Collective.
 nlohmann::json fingerprint(const Scene& scene, const assembly::System& system);
 
-/// Throws an Error that names what differs. A table may have got more points at its end.
+/// Throws an Error that names the differences. Additional points at the end of a table are permitted.
 void check_fingerprint(const nlohmann::json& of_checkpoint, const nlohmann::json& of_scene);
 
 }  // namespace sprekk::model

@@ -1,4 +1,4 @@
-// Numbers of fractures: means, maxima, integrals over their faces, and what follows from those.
+// Fracture averages, maxima and integrals over faces, and derived values.
 #pragma once
 
 #include "assembly/module.hpp"
@@ -10,41 +10,43 @@
 
 namespace sprekk::model {
 
-/// One number, or one vector, of each group of fracture faces.
+/// Column with one number or vector per group of fracture faces.
 struct FractureColumn {
-  std::string name, frame, unit;  ///< frame: of vectors, "global" or "local"; else empty
+  std::string name, frame, unit;  ///< frame: "global" or "local" for vectors, else empty
   int n_components = 1;
-  std::vector<Real> values = {};  ///< [group * n_components + component]; NaN where it has no meaning
+  std::vector<Real> values = {};  ///< [group * n_components + component]; NaN if undefined
 
-  /// The number or the vector of a group.
+  /// Number or vector of a group.
   nlohmann::json of(std::size_t group) const;
-  /// With the frame behind it.
+  /// Name followed by the frame.
   std::string full_name() const { return frame.empty() ? name : name + "_" + frame; }
 };
 
-/// What faces are summed up to: sets of fractures, as a scene lists them, or single fractures.
+/// Groups of faces: sets of fractures as listed in the scene, or single fractures.
 enum class Grouping { sets, singles };
 
-/// Area, and what the summaries of the outputs tell. Collective; linear in faces and groups.
+/// Computes the area and the summaries of the outputs for each group. The cost is linear in faces and groups.
+/// Collective.
 std::vector<FractureColumn> fracture_table(const mesh::Mesh& mesh, const std::vector<assembly::OutputField>& outputs,
                                            Grouping grouping);
 
-/// The columns of sets by their names, vectors by the names of their frames.
+/// Returns the columns of sets by their names, vectors by the names of their frames.
 nlohmann::json by_sets(const mesh::Mesh& mesh, const std::vector<FractureColumn>& columns);
-/// Lists by the names of columns, vectors in the local frame alone, without the area.
+/// Returns one list per column name. Vectors are in the local frame only; the area is omitted.
 nlohmann::json by_singles(const std::vector<FractureColumn>& columns);
-/// The units of what by_singles() gives.
+/// Units of the columns returned by by_singles().
 nlohmann::json units(const std::vector<FractureColumn>& columns);
 
-/// Of each single fracture its name, set, area, centre, mean normal, strike and, in 3D, dip, in degrees. Collective.
+/// Returns for each single fracture its name, set, area, centre, mean normal, strike and, in 3D, dip; angles in
+/// degrees. Collective.
 nlohmann::json described_singles(const mesh::Mesh& mesh);
 
-/// A table of single fractures for people and other programs: a line each, as described_singles() and columns say, with
-/// titles that have units.
+/// Writes the table of single fractures as CSV text: one line per fracture, with the entries of described_singles() and
+/// the columns. Column titles contain units.
 std::string to_csv(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 
-/// A line for each class of a state, `slip: 2 of 12 fractures: "a" (100 %), "b" (35 %)`, by the share of their area,
-/// the largest first.
+/// Returns one line per contact state, `slip: 2 of 12 fractures: "a" (100 %), "b" (35 %)`. Fractures are ordered by
+/// their share of the area in this state, largest first.
 std::vector<std::string> digest(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 
 }  // namespace sprekk::model

@@ -1,40 +1,43 @@
-// The quantities of the section Accuracy: their values, how far these are off, and which cells are to blame.
+// Quantities of the section Accuracy: values, errors, and the cells that cause the errors.
 #pragma once
 
 #include "model/error_estimate.hpp"
 
 namespace sprekk::model {
 
-/// Follows the states of a model, which it refers to. All members are collective unless they return stored data.
+/// Quantities along the states of a model, to which it refers. All members are collective unless they return stored
+/// data.
 class Goals {
  public:
   struct Estimate {
     Real value = 0;
-    Real error = 0;  ///< by the mesh; infinite where there is no estimate
+    Real error = 0;  ///< error due to the mesh; infinite without an estimate
   };
 
   explicit Goals(Model& model);
 
-  /// Whether a state has to be added: the last one, and with slip, which adds up, each. Stored data.
+  /// Returns true if the state must be added: the last one, or every one if slip is a quantity or the model has
+  /// storage. Stored data.
   bool need(bool last) const;
-  /// Takes the present state, with its outputs and their errors. A face that does not slip in a step keeps what its
-  /// slip lacked before. `last`: no other state follows.
+  /// Adds the present state, with its outputs and errors. A face without slip in this step retains its previous slip
+  /// error. `last`: no other state follows.
   void add(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate, ErrorEstimator& estimator,
            bool last);
-  /// Weighs cells for the state added last: if it is the `last` one, and for slip where others slip than before.
+  /// Computes cell weights for the state added last. It does so in the `last` state and, for slip, when the set of
+  /// slipping faces has changed.
   void weigh(const std::vector<assembly::OutputField>& outputs, const ErrorEstimate& estimate,
              ErrorEstimator& estimator, bool last);
 
-  /// What flows is in error, too, which does not fall with the order of cells. Stored data.
+  /// Returns true if flux errors exist too; their rate does not increase with the order of the cells. Stored data.
   bool any_flux() const { return !fluxes_.empty() && !fluxes_.back().empty(); }
-  /// Of the last state, by the names of the quantities.
+  /// Estimates for the last state, by the names of the quantities.
   const std::map<std::string, Estimate>& estimates() const { return estimates_; }
 
-  /// [owned cell] the largest over quantities of weight * the cell's share in the bound of the error.
+  /// [owned cell] maximum over the quantities of weight * contribution of the cell to the error bound.
   std::vector<Real> indicators(const std::map<std::string, Real>& weights) const;
 
  private:
-  /// Of the slip of a face: its error, with its sign and without.
+  /// Slip error of a face: signed component along the slip, and absolute value.
   struct Lack {
     Real along = 0, size = 0;
   };
@@ -55,16 +58,16 @@ class Goals {
 
   Model& model_;
   std::vector<std::vector<ErrorEstimate::Flux>> fluxes_;  // of all steps
-  std::vector<Real> plastic_;                             // jump of the last state, as in its output
+  std::vector<Real> plastic_;                             // plastic jump of the last state, as in its output
   std::vector<Lack> lacks_;                               // [owned fracture face]
-  std::vector<char> slips_, weighted_;  // [owned fracture face] in the last step, and when cells were weighted last
+  std::vector<char> slips_, weighted_;  // [owned fracture face] slip in the last step, and at the last weighing
   std::map<std::string, Estimate> estimates_;
   std::map<std::string, std::vector<Real>> bounds_;  // [quantity][owned cell]
 };
 
-/// The fewest cells that have at least the share `theta` of the sum of indicators, of which the largest come first; but
-/// for that those within a factor of 2^(1/8) come together: so the choice does not depend on how ranks round sums.
-/// Collective.
+/// Returns the smallest set of cells with at least the share `theta` of the sum of indicators, largest first.
+/// Indicators within a factor of 2^(1/8) are selected together, so the choice does not depend on the rounding of sums
+/// over ranks. Collective.
 std::vector<LocalIndex> marked(const Comm& comm, const std::vector<Real>& indicators, Real theta);
 
 }  // namespace sprekk::model

@@ -1,4 +1,4 @@
-// Names of entries of results.json.
+// Keys of results.json.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Times at which loads change their course.
+// Times at which the slope of loads changes.
 #pragma once
 
 #include "model/scene.hpp"
@@ -8,17 +8,17 @@
 
 namespace sprekk::model {
 
-/// A table that an expression of the scene calls by shift + factor t.
+/// Table called by an expression of the scene at shift + factor t.
 struct TableOfTime {
   std::string name;
-  const base::Table* table;  ///< of the scene
+  const base::Table* table;  ///< owned by the scene
   Real shift, factor;
 };
 
-/// Each once for each shift and factor.
+/// Returns each table once per shift and factor.
 std::vector<TableOfTime> tables_of_time(const Scene& scene);
 
-/// The knots of these tables after the start and up to `end`, increasing.
+/// Returns the knots of these tables after the start and up to `end`, ascending, s.
 std::vector<Real> knots(const Scene& scene, Real end);
 
 }  // namespace sprekk::model

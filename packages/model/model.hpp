@@ -1,4 +1,4 @@
-// The embedding surface: a host application includes this header and no other.
+// Interface for embedding: host applications need only this header.
 #pragma once
 
 #include "assembly/kernel_module.hpp"
@@ -21,59 +21,59 @@ namespace sprekk::model {
 
 struct StagedScene;
 
-/// Modules of a host for a rank's part of the mesh; called on every rank, must not communicate.
+/// Factory of host modules for a rank's part of the mesh. It is called on every rank and must not communicate.
 using ModuleFactory = std::function<std::vector<std::unique_ptr<assembly::Module>>(const mesh::Mesh&)>;
 
-/// A field in place, on the entities that this rank owns: entity i is the node with mesh().node_id[i], the cell with
-/// mesh().cell_id[i] or mesh().fracture_faces[i]. What a host writes counts at once.
+/// View of a field on the entities owned by this rank. Entity i is the node with mesh().node_id[i], the cell with
+/// mesh().cell_id[i], or mesh().fracture_faces[i]. Values written by a host are effective immediately.
 struct FieldView {
   fields::Field field;
   View<Real**> values;  ///< [owned entity, component], in device memory
 };
 
-/// A scene brought to life on a communicator: mesh, modules, solver and the present state. Several can live in one
-/// process. All members are collective unless they return stored data.
+/// Scene on a communicator: mesh, modules, solver and present state. Several models may exist in one process. All
+/// members are collective unless they return stored data.
 class Model {
  public:
-  /// Prepares the scene (see prepared()) and builds its system; `more_modules` are appended to the scene's own. Errors
-  /// are the same on every rank.
+  /// Prepares the scene (see prepared()) and builds its system. `more_modules` are appended to the modules of the
+  /// scene. Errors are the same on every rank.
   Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules = {});
 
-  /// Goes from time() to t in one step, in substeps where Newton needs them. If the report is not converged, or an
-  /// Error is thrown, the state is the last that did, at time().
+  /// Advances from time() to t, s, in one step; if Newton's method fails, in substeps. If the report is not converged
+  /// or an Error is thrown, the state is the last converged one, at time().
   solve::StepReport step_to(Real t);
 
-  /// Goes on as `changed` from time() on: materials, loads, conditions and laws may be others, regions excavated. The
-  /// state stays, and what no longer balances is in the next step, or is released as "release" of Bulk says. Where both
-  /// scenes say the same nothing is done, and no bit changes. Errors name what a live model cannot follow, and leave it
-  /// as it was.
+  /// Replaces the scene by `changed` from time() on: materials, loads, conditions and laws may change, regions may be
+  /// excavated. The state is preserved. Unbalanced forces act in the next step, or are released gradually according to
+  /// "release" of Bulk. If both scenes are equal, the call has no effect. Unsupported changes throw an Error, and the
+  /// model remains unchanged.
   void change(const Scene& changed);
 
-  /// An equilibrium at time() with what has changed since the last: entries of the scene, fields, what modules of a
-  /// host do. Otherwise as step_to(). Error: something is stored, which takes time to change.
+  /// Finds an equilibrium at time() after changes of the scene, of fields or of host modules. Behaves otherwise like
+  /// step_to(). Throws an Error in models with storage, which requires time.
   solve::StepReport find_equilibrium();
 
-  /// Goes back to where the last step began, to take it again under other loads: so a host that solves for a part of
-  /// the problem itself iterates within a step. The solver keeps what it has, and modules what they keep outside of
-  /// their histories. Error: there was no step since the model,
-  /// or the last state that was taken back or restored.
+  /// Reverts the last step, so it can be repeated with other loads. A host that solves a part of the problem iterates
+  /// within a step in this way. The solver retains its data, and modules retain data outside their histories. Throws an
+  /// Error if there was no step since construction, or since the last take_back() or restore().
   void take_back();
 
-  /// The unknowns of a field, by its name, which are the start of the next step's iteration; or a history, by "MODULE:
-  /// HISTORY", which the next step depends on. Valid until the model's next member call. Error: there is no such field.
-  /// Stored data.
+  /// Returns a view of the unknowns of a field, given by its name; they are the initial iterate of the next step.
+  /// "MODULE: HISTORY" returns a history, on which the next step depends. The view is valid until the next member call.
+  /// Throws an Error if the field does not exist. Stored data.
   FieldView field(const std::string& name);
-  /// One of the outputs of the present state. Error: there is no such output.
+  /// Returns one output of the present state. Throws an Error if the output does not exist.
   assembly::OutputField output(const std::string& name);
 
-  /// All that the next step depends on. The solver starts anew, as it does in restore(): so the steps that follow have
-  /// the same bits after either, on the same number of ranks.
+  /// Returns all data on which the next step depends. The solver is reset, as in restore(). The following steps are
+  /// therefore bitwise identical after save() and restore(), on the same number of ranks.
   io::Checkpoint save();
-  /// Goes back to what save() gave on any number of ranks. Error: it is of another scene; the message says in what.
+  /// Restores a state saved on any number of ranks. Throws an Error that names the difference if it is of another
+  /// scene.
   void restore(const io::Checkpoint& checkpoint);
 
-  /// A line for each thing of the scene that is allowed and hardly meant: conditions that hold nowhere, columns that
-  /// are passed over, what each physics doubts, steps that pass over knots of a table.
+  /// Returns one line per implausible input: conditions without effect, ignored columns, warnings of each physics,
+  /// steps that skip knots of a table.
   std::vector<std::string> warnings() const;
 
   Real time() const { return time_; }
@@ -84,12 +84,12 @@ class Model {
   const assembly::System& system() const { return *system_; }
   const solve::Newton& newton() const { return *newton_; }
   solve::Newton& newton() { return *newton_; }
-  /// The present unknowns, one vector per block, owned by the model.
+  /// Present unknowns, one vector per block, owned by the model.
   const fields::BlockVector& state() const { return x_; }
   base::Timers& timers() { return *timers_; }
 
  private:
-  /// What equations are made of.
+  /// Data from which equations are built.
   struct Draft {
     Scene scene;
     RCP<const mesh::Mesh> mesh;
@@ -101,7 +101,7 @@ class Model {
   void check_start(Draft draft, const StagedScene& stage) const;
   std::unique_ptr<assembly::System> make_system(Draft draft) const;
 
-  /// What a step begins with.
+  /// State at the beginning of a step.
   struct Beginning {
     fields::BlockVector x;
     std::vector<View<Real**>> histories;
@@ -114,7 +114,7 @@ class Model {
 
   ModuleFactory more_modules_;
   Scene scene_;
-  RCP<const mesh::Mesh> whole_mesh_;  ///< with what is excavated
+  RCP<const mesh::Mesh> whole_mesh_;  ///< including excavated regions
   RCP<base::Timers> timers_;
   std::unique_ptr<assembly::System> system_;
   std::unique_ptr<solve::Newton> newton_;
@@ -124,7 +124,7 @@ class Model {
   std::optional<Beginning> beginning_;  // of the last step
 };
 
-/// The equation system of a scene is a list of modules. Collective.
+/// Makes the modules of a scene, which together form its equation system. Collective.
 physics::Modules make_modules(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::model

@@ -1,4 +1,4 @@
-// A fracture network as a scene describes it: fractures in a domain, of which apps/mesh makes a mesh of gmsh.
+// Fracture network in a scene: fractures in a domain, meshed with gmsh by apps/mesh.
 #pragma once
 
 #include "base/parameters.hpp"
@@ -11,15 +11,15 @@
 
 namespace sprekk::model {
 
-/// What `sprekk mesh` reads. Angles in degree; x points east, y north, z up.
+/// Input of `sprekk mesh`. Angles are in degrees; x points east, y north, z up.
 struct Network {
-  /// A polyline or a plane polygon.
+  /// Polyline or plane polygon.
   struct Points {
     std::vector<Real> points;
     void describe(base::Section& section);
   };
 
-  /// A box, a polygon (2D) or a polyhedron (3D).
+  /// Box, polygon (2D) or polyhedron (3D).
   struct Body {
     std::vector<Real> lower_corner, upper_corner;
     std::vector<Real> corners;
@@ -28,7 +28,7 @@ struct Network {
   };
 
   struct Domain : Body {
-    std::vector<std::string> sides;  ///< names of the sides of a polygon, from corner 0 to 1 on
+    std::vector<std::string> sides;  ///< names of the sides of a polygon; the first side is from corner 0 to 1
     void describe(base::Section& section);
   };
 
@@ -38,7 +38,7 @@ struct Network {
     void describe(base::Section& section);
   };
 
-  /// Fractures at random.
+  /// Random fractures.
   struct Random {
     int number = 0, seed = 1, corners = 12;
     Real shortest = 0, longest = 0, exponent = 2.5;
@@ -46,19 +46,19 @@ struct Network {
     void describe(base::Section& section);
   };
 
-  /// Fractures that are one physical group of the mesh, or surfaces that cells keep to.
+  /// Fractures that form one physical group of the mesh, or surfaces to which the cells conform.
   struct Set {
-    std::optional<std::string> file;  ///< relative to the scene's file
+    std::optional<std::string> file;  ///< relative to the scene file
     std::optional<std::string> format;
-    std::vector<std::string> layers;  ///< of the file; empty: all
-    std::optional<Real> unit;         ///< of coordinates in the file, in metres
+    std::vector<std::string> layers;  ///< layers of the file; empty: all
+    std::optional<Real> unit;         ///< unit of the coordinates in the file, m
     std::map<std::string, Points> lines, polygons;
     std::map<std::string, Ellipse> ellipses;
     std::optional<Random> random;
     void describe(base::Section& section);
   };
 
-  std::optional<Domain> domain;  ///< or in the file of a set
+  std::optional<Domain> domain;  ///< absent: in the file of a set
   std::map<std::string, Set> fractures, constraints;
   std::map<std::string, Body> regions;
   Real relative_size = 0.1;
@@ -70,12 +70,12 @@ struct Network {
   std::string unusable = "refused";  ///< or "left out"
   void describe(base::Section& section);
 
-  /// Makes names of files absolute, which are relative to `folder`.
+  /// Makes file names absolute; they are relative to `folder`.
   void resolve_files(const std::string& folder);
 };
 
-/// The network of the scene at `path`, of which nothing else is read: its `Mesh file > network` with all defaults as
-/// XML. Throws an Error with a line for each thing that is wrong. Collective.
+/// Reads the network of the scene at `path` and nothing else. Returns its `Mesh file > network` with all defaults as
+/// XML. Throws an Error with a line for each mistake. Collective.
 std::string network_description(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace sprekk::model

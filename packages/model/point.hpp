@@ -1,4 +1,4 @@
-// One point of a joint, driven along a path without a mesh.
+// Single point of a joint, loaded along a path without a mesh.
 #pragma once
 
 #include "laws/contact.hpp"
@@ -8,31 +8,31 @@
 
 namespace sprekk::model {
 
-/// What drives the point. For every component either the jump w or the traction lambda is prescribed, or the joint
-/// stands in a column of rock of stiffness k whose end is displaced by d: lambda = k (d - w). With an initial traction
-/// lambda_0, under which the joint has the jump w_0, jumps count from there: w_0 + path, lambda = lambda_0 + k (d - (w
-/// - w_0)). So a path of 0 is a test at constant normal stiffness (column) or constant volume (jump).
+/// Loading of the point. Each component is controlled by the jump w, the traction lambda, or a column of rock of
+/// stiffness k. The end of the column is displaced by d: lambda = k (d - w). With an initial traction lambda_0 and its
+/// jump w_0, jumps are relative to w_0: w = w_0 + path, lambda = lambda_0 + k (d - (w - w_0)). A zero path is then a
+/// test at constant normal stiffness (column) or constant volume (jump).
 struct PointPath {
-  std::string material;                                 ///< a joint
+  std::string material;                                 ///< name of a joint material
   std::vector<std::string> control;                     ///< per component n, t[, t2]: "jump", "traction" or "column"
   std::vector<base::Expression> path;                   ///< per component w, lambda or d as a function of t; m or Pa
   Real normal_stiffness = 0, tangential_stiffness = 0;  ///< k of a column, Pa/m
-  std::vector<Real> plastic_jump;                       ///< at the start, tangential; default 0
+  std::vector<Real> plastic_jump;                       ///< initial tangential plastic jump, m; default 0
   std::vector<Real> initial_traction;                   ///< lambda_0, Pa; default 0
   void describe(base::Section& section);
 };
 
-/// One point, or several specimens that share the time steps.
+/// One point, or several specimens with common time steps.
 struct PointScene {
   std::map<std::string, Material> materials;
   base::Tables tables;
-  base::Expression::Named expressions;  ///< that others call by name
+  base::Expression::Named expressions;  ///< named expressions, for use in others
   Time time;
   PointPath point;
   std::map<std::string, PointPath> specimens;  ///< by name; empty: `point`
-  std::string file;                            ///< for messages
+  std::string file;                            ///< file name for messages
   void describe(base::Section& section);
-  /// Where each path is in the scene, `Specimens > NAME` or `Point`, with it.
+  /// Returns each path with its place in the scene, `Specimens > NAME` or `Point`.
   std::vector<std::pair<std::string, const PointPath*>> paths() const;
 
  private:
@@ -40,40 +40,41 @@ struct PointScene {
 };
 
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides = {});
-/// The same of entries as a file would have them; `origin` opens messages. Not collective.
+/// Builds a point scene from entries like those of a file; `origin` is the prefix of messages. Not collective.
 PointScene point_scene_of(Teuchos::ParameterList entries, const std::string& origin,
                           const std::vector<std::string>& overrides = {});
 
-/// A state of the point: at the start, at the end of a step, or before and after slip that jumps in a step.
+/// State of the point: at the start, at the end of a step, or before and after a slip jump in a step.
 struct PointState {
   Real t = 0;
   laws::ContactState contact = laws::ContactState::open;
   std::vector<Real> jump = {}, elastic = {}, plastic = {}, traction = {};  ///< n, t[, t2]
-  Real strength = 0;        ///< the bound on |lambda_t| under this normal traction, after this slip, Pa
-  std::string remark = {};  ///< how slip jumped, for a user; or empty
-  bool slip_jumps = false;  ///< since the state before
+  Real strength = 0;        ///< bound of |lambda_t| for this normal traction and slip, Pa
+  std::string remark = {};  ///< description of a slip jump for users, or empty
+  bool slip_jumps = false;  ///< slip jumped since the previous state
 };
 
-/// The states along a path. Those before a step that has none are kept.
+/// States along a path, up to the first step without a state.
 struct PointCurve {
   PointState initial = {};
   std::vector<PointState> states = {};
-  std::string failure = {};   ///< file, place, step and reason, if not all steps have a state
-  std::string specimen = {};  ///< its name, if the scene has several
+  std::string failure = {};   ///< file, place, step and reason, if a step has no state
+  std::string specimen = {};  ///< name of the specimen, if the scene has several
 };
 
-/// Implicit Euler along the path, one state per step. There is none where the prescribed values determine no state: a
-/// jump that a rigid joint cannot have, a shear traction above the friction bound. Where the bound falls faster with
-/// slip than what shears the joint unloads, slip jumps: the step is cut there, and has states just before and after the
-/// jump.
+/// Returns true for a model with exactly one flux error estimator and without mechanics; shares() requires it. Stored
+/// data. Integrates the path with implicit Euler, one state per step. A step has no state if the prescribed values
+/// admit none: a jump impossible for a rigid joint, or a shear traction above the friction bound. If the bound
+/// decreases with slip faster than the loading system unloads, slip jumps. The step is then divided and has states just
+/// before and after the jump.
 std::vector<PointCurve> drive_points(const PointScene& scene);
 
-/// The states at the ends of the steps, and at jumps, of the one point of a scene. Throws an Error where a step has
-/// none.
+/// Returns the states of a scene with one point, at the ends of steps and at jumps. Throws an Error if a step has no
+/// state.
 std::vector<PointState> drive_point(const PointScene& scene);
 
-/// Writes the initial states and all others as CSV: the specimen, if there are several; t, contact state (0 open, 1
-/// stick, 2 slip), then jump, elastic jump, plastic jump and traction by component, and the strength, with 17 digits.
+/// Writes all states as CSV with 17 digits. Columns: specimen (if several), t, contact state (0 open, 1 stick, 2 slip),
+/// then jump, elastic jump, plastic jump and traction by component, and strength.
 void write_csv(std::ostream& out, const std::vector<PointCurve>& curves);
 
 }  // namespace sprekk::model

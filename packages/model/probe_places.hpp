@@ -1,4 +1,4 @@
-// Where probes look: which entities of a mesh a value at a place is made of.
+// Locations of probes: entities and weights that give the value at a place.
 #pragma once
 
 #include "fields/layout.hpp"
@@ -9,25 +9,25 @@
 
 namespace sprekk::model {
 
-/// A part of a value at a place: weight times that of an entity of this rank.
+/// Weighted contribution of an entity on this rank to a value.
 struct Share {
   LocalIndex entity;
   Real weight;
 };
 using Shares = std::vector<Share>;
 
-/// Of values at points, of outputs on nodes, cells or fracture faces: the values of the nodes of the cell at the point
-/// by its shape functions, that of the cell, that of the nearest face. Of several cells or faces the one with the
-/// lowest number counts, so values do not depend on the ranks. The shares of a point, over all ranks, add up to 1.
-/// Error: a point is outside of the mesh or, of faces, off all fractures by more than 1e-6 of the domain's largest
-/// extent. Collective.
+/// Returns the shares for values at points. Nodal outputs are interpolated with the shape functions of the cell at the
+/// point. Cell outputs are the value of this cell, face outputs that of the nearest fracture face. Among several cells
+/// or faces, the lowest number is used, so values are independent of the distribution. The shares of a point sum to 1
+/// over all ranks. Throws an Error if a point is outside the mesh or, for fracture faces, farther than 1e-6 of the
+/// largest extent of the domain from all fractures. Collective.
 std::vector<Shares> shares_at(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<mesh::Vector>& points);
 
-/// Of integrals over a boundary, with an index into boundary_names, of outputs on nodes or cells. Local.
+/// Returns the shares for integrals of outputs on nodes or cells over a boundary, an index into boundary_names. Local.
 Shares shares_on_boundary(const mesh::Mesh& mesh, fields::Entity entity, int boundary);
-/// The same over a region, by its index.
+/// Returns the shares for integrals of outputs on nodes or cells over a region, an index into region_names. Local.
 Shares shares_in_region(const mesh::Mesh& mesh, fields::Entity entity, int region);
-/// Over the faces of a set of fractures, or of a single one, of outputs on fracture faces. Local.
+/// Returns the shares for integrals of outputs on fracture faces over a set of fractures or a single fracture. Local.
 Shares shares_on_fractures(const mesh::Mesh& mesh, bool is_set, int number);
 
 }  // namespace sprekk::model

@@ -1,4 +1,4 @@
-// What a run looks at in every step: the section Probes of a scene.
+// Section Probes of a scene: values recorded in every step.
 #pragma once
 
 #include "io/series.hpp"
@@ -11,31 +11,32 @@
 
 namespace sprekk::model {
 
-/// What is known of a state.
+/// Data of one state.
 struct Observation {
   const std::vector<assembly::OutputField>& outputs;
-  const std::vector<FractureColumn>& sets;          ///< numbers of sets of fractures
-  const std::vector<FractureColumn>& singles;       ///< of single fractures
+  const std::vector<FractureColumn>& sets;          ///< values of sets of fractures
+  const std::vector<FractureColumn>& singles;       ///< values of single fractures
   const nlohmann::json& sums;                       ///< by names, as in results.json: `reactions > east`
-  const std::map<std::string, std::string>& units;  ///< of sums by the first of their names, or by all: `a > b > c`
+  const std::map<std::string, std::string>& units;  ///< units of sums, by their first name or by all: `a > b > c`
 };
 
-/// The probes of a model's scene as tables.
+/// Probes of a scene of a model, as tables.
 class Probes {
  public:
-  /// Finds the places and the outputs. Error: a line for each that is not there, naming the probe, what it asks for and
-  /// what there is. A place that is excavated has no values. Collective.
+  /// Finds the places and the outputs. Throws an Error with one line per missing item: the probe, the requested name,
+  /// and the available names. Excavated places have no values. Collective.
   explicit Probes(const Model& model);
 
-  /// Looks at the changed mesh of the model from now on. Collective.
+  /// Updates the probes after a change of the mesh of the model. Collective.
   void look_again();
 
   bool empty() const { return tables_.empty(); }
-  /// What each table tells of a state, [table][place * columns + column], the same on every rank. Collective.
+  /// Returns the values of each table for a state, [table][place * columns + column], the same on every rank.
+  /// Collective.
   std::vector<std::vector<Real>> values(const Observation& observation);
-  /// Without rows; complete after the first values().
+  /// Tables without rows; complete after the first values().
   const std::vector<io::SeriesTable>& tables() const { return tables_; }
-  /// What the scene says of each, [table].
+  /// Definitions of the probes in the scene, [table].
   std::vector<std::string> definitions() const;
 
  private:

@@ -1,4 +1,4 @@
-// What a run leaves behind: results.json, the effective input, and pictures for ParaView.
+// Output of a run: results.json, the effective input, and files for ParaView.
 #pragma once
 
 #include "base/log.hpp"
@@ -19,46 +19,46 @@
 
 namespace sprekk::model {
 
-/// The results of the runs that a run goes on from.
+/// Results of previous runs that this run continues.
 struct EarlierResults {
-  std::vector<nlohmann::json> journal;                ///< what Results::journal() gave for all their steps
-  nlohmann::json restarts = nlohmann::json::array();  ///< the times at which they went on
+  std::vector<nlohmann::json> journal;                ///< Results::journal() for all their steps
+  nlohmann::json restarts = nlohmann::json::array();  ///< times of the restarts, s
   nlohmann::json probes = nlohmann::json::object();   ///< Results::probes_begun()
   nlohmann::json stages = nlohmann::json::array();    ///< Results::stages()
 };
 
-/// Writes a model's states into a directory, step by step. Everything in it is complete after every write. All members
-/// are collective; Errors name the path, on every rank.
+/// Writer of the states of a model into a directory, step by step. All files are complete after every write. All
+/// members are collective; Errors name the path, on every rank.
 class Results {
  public:
-  /// The steps of `earlier` stay, and those that were written after them go.
+  /// Retains the steps of `earlier` and removes later ones.
   Results(Model& model, Scene as_read, std::string directory, const std::optional<EarlierResults>& earlier = {});
 
-  /// The steps from number `begin` on, each with whether its fields were written and what probes saw; none on other
-  /// ranks than 0. Stored data.
+  /// Steps from number `begin` on, with their probe values and a mark for written fields; empty on ranks other than 0.
+  /// Stored data.
   std::vector<nlohmann::json> journal(int begin) const;
-  /// Of each probe by its name: `definition`, and the `first` row of its table.
+  /// By name of the probe: `definition`, and the `first` row of its table.
   const nlohmann::json& probes_begun() const { return probes_begun_; }
   nlohmann::json restarts() const { return json_.value("restarts", nlohmann::json::array()); }
-  /// Those that have begun, with the mesh that each has.
+  /// Stages that have begun, with their meshes.
   nlohmann::json stages() const { return json_.value("stages", nlohmann::json::array()); }
   int n_steps() const { return n_steps_; }
 
-  /// Adds the state that the step ended with; `last` writes the files of fields whatever "every" says. Returns how many
-  /// fracture faces are open, stick and slip.
+  /// Adds the state at the end of a step; `last` writes field files regardless of "every". Returns the numbers of open,
+  /// sticking and slipping fracture faces.
   std::array<long long, 3> add_step(const StepTaken& taken, bool last);
-  /// What may be wrong with the states added since the last call, each text once in the life of the results.
+  /// Returns warnings for the states added since the last call; each text occurs only once.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
-  /// Which single fractures are in which state after the last step, a line for each state. Stored data.
+  /// Lines with the single fractures in each contact state after the last step. Stored data.
   std::vector<std::string> fracture_digest() const;
-  /// How far quantities of the last state may be from exact ones, relative, by their names.
+  /// Relative error bounds of quantities in the last state, by their names.
   const std::map<std::string, Real>& error_bounds() const { return error_bounds_; }
-  /// The quantities of the section Accuracy in the states so far; of a scene that has one.
+  /// Quantities of the section Accuracy in the states so far. The scene must have this section.
   const Goals& goals() const { return *goals_; }
-  /// What `finish` is to tell of them.
+  /// Sets the entry "accuracy" for finish().
   void add_accuracy(const nlohmann::json& summary) { json_["accuracy"] = summary; }
-  /// "completed", "interrupted" or "failed", with the reason of a failure. Error: the results cannot be written; as far
-  /// as the file of the last write has room for it, it says so.
+  /// Finishes the results with the status "completed", "interrupted" or "failed", with the reason of a failure. Throws
+  /// an Error if writing fails; if possible, the last file then contains the reason.
   void finish(const std::string& status, const std::string& reason = "");
 
  private:
@@ -69,7 +69,7 @@ class Results {
   void start_probes(const std::optional<EarlierResults>& earlier);
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
-  void start_fractures(const std::vector<Real>& written);  ///< their pictures go on after the steps at these times
+  void start_fractures(const std::vector<Real>& written);  ///< continues their files after the steps at these times
   long long add_unsettled(const solve::StepReport& report);
   bool fields_are_due(const StepTaken& step) const;
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
@@ -82,12 +82,12 @@ class Results {
   std::optional<Goals> goals_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   Probes probes_;
-  std::optional<io::SeriesFiles> series_;       // of probes
+  std::optional<io::SeriesFiles> series_;       // files of the probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
-  std::map<std::string, std::string> units_;    // of what reactions() gives
+  std::map<std::string, std::string> units_;    // units of reactions()
   nlohmann::json json_, probes_begun_ = nlohmann::json::object();
   int n_steps_ = 0, n_written_ = 0;
-  std::vector<Real> ends_;  // of the steps so far, after the start
+  std::vector<Real> ends_;  // end times of the steps so far, s
   std::set<std::string> told_;
   std::vector<std::string> warnings_;
   std::map<std::string, Real> error_bounds_;
@@ -95,11 +95,11 @@ class Results {
   std::chrono::steady_clock::duration write_took_{};
 };
 
-/// Leaves a results.json that says why a run never began, or with `only_replace` only in place of one that is there;
-/// silent if it cannot be written. Collective.
+/// Writes a results.json with the reason why a run did not begin. With `only_replace`, it only replaces an existing
+/// file. Failures to write are ignored. Collective.
 void write_failure(const Comm& comm, const std::string& directory, const std::string& reason, bool only_replace);
 
-/// Fields, blocks with their unknowns and bytes, and what is exchanged between ranks. Collective.
+/// Returns fields, blocks with their unknowns and bytes, and the exchange between ranks. Collective.
 nlohmann::json block_summary(const assembly::System& system);
 
 }  // namespace sprekk::model

@@ -1,4 +1,4 @@
-// A scene file run from beginning to end.
+// Complete run of a scene file.
 #pragma once
 
 #include "base/types.hpp"
@@ -13,48 +13,49 @@ struct RunOptions {
   std::string scene;                   ///< path of the XML file
   std::string output;                  ///< directory; empty: default_directory()
   std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
-  bool restart = false;                ///< go on from the last checkpoint in the output directory
-  bool prints_log = false;             ///< print the log to the standard output, as well as to log.txt
-  bool reserved = false;               ///< the caller sees to it that no other run writes into the directory
-  bool strict = false;                 ///< warnings of the scene are errors, and what Accuracy asks for must be reached
-  /// If not empty: asked on every rank in each Newton iteration and after each step; true on any ends the run.
+  bool restart = false;                ///< continue from the last checkpoint in the output directory
+  bool prints_log = false;             ///< print the log to the standard output too, not only to log.txt
+  bool reserved = false;               ///< the caller prevents other runs in the directory
+  bool strict = false;  ///< treat warnings of the scene as errors, and require the tolerances of Accuracy
+  /// Stop function, may be empty. It is called on every rank in each Newton iteration and after each step; true on any
+  /// rank ends the run.
   std::function<bool()> should_stop;
 };
 
-/// The version of Sprekk, as "0.1.0".
+/// Version of Sprekk, such as "0.1.0".
 std::string version();
 
-/// output/NAME of the scene, under the current directory, followed by the overrides, so that each variant has its own:
-/// -PATH=VALUE for each, with _ for all but letters, digits and .=+-; and, where that is long or loses more than
-/// blanks, a checksum of them.
+/// Returns output/NAME of the scene in the current directory, followed by the overrides, so each variant has its own
+/// directory. Each override is appended as -PATH=VALUE. Characters other than letters, digits and .=+- become _. If the
+/// name is long, or if it loses other characters than blanks, a checksum of the overrides is appended.
 std::string default_directory(const RunOptions& options);
 
 enum class Ending {
   completed,
-  inaccurate,  ///< the same, without what the section Accuracy asks for
+  inaccurate,  ///< completed, but the tolerances of Accuracy are not met
   failed,      ///< a step did not converge
-  interrupted  ///< should_stop said so before the end of the last step
+  interrupted  ///< should_stop returned true before the end of the last step
 };
 
-/// Runs the scene, from its beginning or from a checkpoint, and writes its results. With the section Accuracy it
-/// repeats the run on finer meshes; each run replaces the results before. The log is written to log.txt line by line,
-/// warnings also to the standard error. A step that did not converge is reported; the results of earlier steps remain.
-/// An interrupted run ends at its last whole step, with a checkpoint if the scene has checkpoints. Error, the same on
-/// every rank: bad input, a file that cannot be written, or a directory in use by another run, which remains untouched.
-/// Collective.
+/// Runs the scene from its beginning or from a checkpoint and writes the results. With the section Accuracy, the run is
+/// repeated on finer meshes; each run replaces the previous results. The log is written to log.txt line by line,
+/// warnings also to the standard error. A step that does not converge is reported; the results of earlier steps remain.
+/// An interrupted run ends after its last complete step, with a checkpoint if the scene has checkpoints. Throws an
+/// Error, the same on every rank, for invalid input, files that cannot be written, or a directory used by another run,
+/// which remains unchanged. Collective.
 Ending run(const RunOptions& options, RCP<const Comm> comm);
 
-/// Reads and checks a scene, builds its mesh and its equation system, and computes nothing. Throws like run().
+/// Reads and checks a scene and builds its mesh and equation system, without computation. Throws like run().
 /// Collective.
 void check(const RunOptions& options, RCP<const Comm> comm);
 
-/// What is in a gmsh file, with the named physical groups as fractures. Not collective.
+/// Describes the content of a gmsh file; the named physical groups are fractures. Not collective.
 std::string mesh_info(const std::string& path, const std::vector<std::string>& fractures);
 
-/// All parameters of a scene, as Markdown.
+/// Returns all parameters of a scene, as Markdown.
 std::string reference();
 
-/// A RELAX NG schema of scenes, those of read_point_scene included.
+/// Returns a RELAX NG schema of scenes, also for read_point_scene().
 std::string schema();
 
 }  // namespace sprekk::model

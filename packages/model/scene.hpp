@@ -1,4 +1,4 @@
-// A scene: everything that a run needs to know, as the XML file or a host application gives it.
+// Scene: complete input of a run, from an XML file or a host application.
 #pragma once
 
 #include "base/parameters.hpp"
@@ -26,44 +26,44 @@ using physics::Fracture;
 using physics::Material;
 using physics::Region;
 
-/// A mesh from a file of gmsh instead of a box.
+/// Mesh from a gmsh file, instead of a box.
 struct MeshFile {
   struct Fracture {
     std::optional<std::vector<Real>> reference_normal;
     bool swap_sides = false;
     void describe(base::Section& section);
   };
-  std::string path;                           ///< relative to the scene's file; of a host, to the current directory
-  std::optional<Network> network;             ///< that the mesh was made of; its sets are fractures
-  std::optional<int> order;                   ///< of the cells, 1 or 2; absent: as in the file
+  std::string path;                           ///< relative to the scene file; for hosts, to the current directory
+  std::optional<Network> network;             ///< network from which the mesh was made; its sets are fractures
+  std::optional<int> order;                   ///< order of the cells, 1 or 2; absent: as in the file
   int refinements = 0;                        ///< see mesh::describe_refinements()
   std::string tips = "enriched";              ///< see mesh::describe_tips()
   std::vector<std::string> periodic;          ///< boundaries in pairs, see mesh::tie_periodic()
-  std::map<std::string, Fracture> fractures;  ///< the physical groups that are fractures
+  std::map<std::string, Fracture> fractures;  ///< physical groups that are fractures
   void describe(base::Section& section);
 };
 
 struct Time {
   Real start = 0, end = 1;
-  std::optional<int> steps;  ///< absent: one, if their length is not chosen
+  std::optional<int> steps;  ///< absent: one, if their lengths are not chosen adaptively
   std::optional<std::vector<Real>> schedule;
-  std::optional<Real> tolerance;         ///< of relative errors, by which lengths of steps are chosen
-  std::optional<int> newton_iterations;  ///< of a step, likewise
+  std::optional<Real> tolerance;         ///< relative error, for adaptive step lengths
+  std::optional<int> newton_iterations;  ///< target per step, for adaptive step lengths
   std::optional<Real> first_step, smallest_step, largest_step;
-  std::string scheme = "implicit Euler";  ///< or BDF2, of rates of what is stored
+  std::string scheme = "implicit Euler";  ///< or BDF2, for storage rates
   solve::TimeSteppingOptions stepping;
   void describe(base::Section& section);
   bool chooses_steps() const { return tolerance || newton_iterations; }
-  std::vector<Real> times() const;  ///< the ends of all steps; if their length is chosen, of those that must be met
+  std::vector<Real> times() const;  ///< ends of all steps, s; for adaptive steps, the prescribed times
 
  private:
   void describe_choice(base::Section& section) const;
 };
 
-/// When a run writes a checkpoint: whatever comes first, and after the last step.
+/// Intervals of checkpoints: the first condition met applies; a checkpoint also follows the last step.
 struct CheckpointTimes {
   std::optional<int> steps;
-  std::optional<Real> minutes;  ///< of the wall clock
+  std::optional<Real> minutes;  ///< of wall-clock time
   void describe(base::Section& section);
 };
 
@@ -71,61 +71,60 @@ struct Output {
   bool vtu = true;
   int every = 1;  ///< steps
   bool error_estimate = false;
-  std::string time_unit = "s";  ///< of tables and pictures
+  std::string time_unit = "s";  ///< time unit of tables and files for ParaView
   std::optional<CheckpointTimes> checkpoints;
   void describe(base::Section& section);
 };
 
 struct Scene : physics::Scene {
   mesh::BoxMesh mesh;
-  std::optional<MeshFile> mesh_file;  ///< used instead of `mesh` if it is there
+  std::optional<MeshFile> mesh_file;  ///< used instead of `mesh` if present
   Time time;
   solve::NewtonOptions solver;
   Output output;
   Stages stages;
   std::optional<Accuracy> accuracy;
-  /// With `accuracy`: the mesh as it has been halved so far, on the rank that makes it. Null, or empty: not yet.
+  /// Bisected mesh of `accuracy`, on the rank that makes the mesh. Null or empty before the first bisection.
   std::shared_ptr<std::optional<mesh::Bisection>> bisection;
 
   void describe(base::Section& section);
-  /// The global mesh of either kind; if it is to be refined, as refined() takes it; halved as far as `bisection` is.
-  /// Not collective.
+  /// Makes the global mesh from a box or a file, bisected as in `bisection`. If uniform refinement follows, the mesh is
+  /// prepared for refined(). Not collective.
   mesh::GlobalMesh make_mesh() const;
-  /// What is left to do once make_mesh() has been distributed: refinement, and what comes after it. Collective.
+  /// Completes the distributed mesh of make_mesh(): uniform refinement and the steps after it. Collective.
   RCP<const mesh::Mesh> refined(RCP<const mesh::Mesh> mesh) const;
-  mesh::GlobalMesh read_mesh() const;  ///< without what is done about crack tips
-  int refinements() const;             ///< of the mesh that is used
-  int order() const;                   ///< that its cells are to have; of a file that does not say, 1
-  const std::string& tips() const;     ///< the same
+  mesh::GlobalMesh read_mesh() const;  ///< without the treatment of crack tips
+  int refinements() const;             ///< of the mesh in use
+  int order() const;                   ///< required order of the cells; 1 if a mesh file does not specify it
+  const std::string& tips() const;     ///< of the mesh in use
 
  private:
-  void add_default_joints();  ///< to fractures of the mesh that name no material
+  void add_default_joints();  ///< for fractures of the mesh without a material
   void check_accuracy(base::Section& section) const;
-  mesh::Bisection bisected() const;  ///< not at all yet
+  mesh::Bisection bisected() const;  ///< initial state, without bisections
 };
 
-/// The scene as a Model uses it: checked as if it had been read from a file, materials of the library added,
-/// expressions made ready; and what is wrong with its entries. What holds for one that was read does not change. Not
-/// collective.
+/// Prepares a scene for a Model: checked as if read from a file, with library materials and compiled expressions. The
+/// result contains the list of mistakes. A scene that was read from a file remains unchanged. Not collective.
 base::Draft<Scene> prepared(const Scene& scene);
 
-/// A stage with the scene that it begins.
+/// Stage with the scene that begins with it.
 struct StagedScene {
   std::string name;
   Real time;
-  base::Draft<Scene> draft;  ///< `SCENE: stage "NAME"` opens its messages
+  base::Draft<Scene> draft;  ///< prefix of its messages: `SCENE: stage "NAME"`
 };
 
-/// All stages of a scene by their times. Not collective.
+/// Returns all stages of a scene, ordered by time. Not collective.
 std::vector<StagedScene> staged_scenes(const Scene& scene);
 
-/// Reads a scene file, applies overrides "Path.To.Entry=value", checks its entries, and makes the expressions ready.
-/// Where an entry is wrong, the mesh is made to check the rest as well; throws one Error with a line for each thing
-/// that is wrong, see checked_mesh(). So it does for the scenes of its stages, without a mesh. Collective.
+/// Reads a scene file, applies overrides "Path.To.Entry=value", checks the entries, and compiles the expressions.
+/// Throws one Error with a line for each mistake. If an entry is wrong, the mesh is made too for the remaining checks,
+/// see checked_mesh(). The scenes of stages are checked in the same way, without a mesh. Collective.
 Scene read_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides = {});
 
-/// The same of entries as a file would have them: `origin` opens messages, files are looked for in `folder`.
-/// Collective.
+/// Builds a scene from entries like those of a file. `origin` is the prefix of messages, `folder` the folder of
+/// relative file names. Collective.
 Scene scene_of(const Comm& comm, Teuchos::ParameterList entries, const std::string& origin, const std::string& folder,
                const std::vector<std::string>& overrides = {});
 

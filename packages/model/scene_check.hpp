@@ -1,4 +1,4 @@
-// What is wrong with a scene as a whole: its parts among each other and with its mesh.
+// Consistency checks of a scene: of its parts, and with its mesh.
 #pragma once
 
 #include "model/scene.hpp"
@@ -9,16 +9,16 @@
 
 namespace sprekk::model {
 
-/// What a scene itself tells about its mesh.
+/// Returns the names and lengths of the mesh that follow from the scene itself.
 physics::MeshNames names_in_scene(const base::Draft<Scene>& draft);
 
-/// What names and lengths do not fit together or to a mesh, a line each; empty if nothing. What could not be read is
-/// no misfit.
+/// Returns inconsistent names and lengths within the scene or with its mesh, one line each. Entries that could not be
+/// read are ignored.
 std::vector<std::string> misfits(const base::Draft<Scene>& draft, const physics::MeshNames& names);
 
-/// The scene's mesh. Throws one Error with a line for each thing that is wrong: all in the draft's report, the mesh,
-/// the misfits, conditions that conflict at the end of the first step, and rock that nothing holds; the last is told by
-/// `unheld` instead, if it is given and nothing else is wrong. Not collective.
+/// Makes the mesh of the scene. Throws one Error with a line for each mistake: those in the report of the draft, of the
+/// mesh, inconsistencies, contradictory conditions at the end of the first step, and rock without support. If
+/// unsupported rock is the only mistake and `unheld` is given, the message is stored there instead. Not collective.
 mesh::GlobalMesh checked_mesh(const base::Draft<Scene>& draft, std::string* unheld = nullptr);
 
 }  // namespace sprekk::model

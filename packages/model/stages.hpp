@@ -1,4 +1,4 @@
-// Changes of a scene at given times: its section Stages.
+// Section Stages of a scene: changes at given times.
 #pragma once
 
 #include "base/parameters.hpp"
@@ -11,21 +11,20 @@
 
 namespace sprekk::model {
 
-/// What a scene is from a time on: the scene before, with entries added or in place of others.
+/// Stage of a scene from a given time on: the previous scene with entries added or replaced.
 struct Stage {
   Real time = 0;
-  std::vector<std::string> without;   ///< sections that end, "Boundary conditions > pull"
-  std::vector<std::string> excavate;  ///< regions whose cells are taken away
-  std::vector<std::string> backfill;  ///< regions whose cells are put back
-  std::optional<Real> release;        ///< how long what is out of balance at first takes to act, s; absent: it acts at
-                                      ///< once
-  Teuchos::ParameterList changes;     ///< sections as they stand in the scene
+  std::vector<std::string> without;   ///< removed sections, "Boundary conditions > pull"
+  std::vector<std::string> excavate;  ///< regions to be excavated
+  std::vector<std::string> backfill;  ///< regions to be filled again
+  std::optional<Real> release;        ///< duration of the release of unbalanced forces, s; absent: immediate
+  Teuchos::ParameterList changes;     ///< sections as in the scene
   void describe(base::Section& section);
 };
 
 using Stages = std::map<std::string, Stage>;
 
-/// Reports stages that do not begin after `start`, or begin at once; in a section that has been read.
+/// Reports stages that do not begin after `start`, or begin at equal times; for a section already read.
 void check_stages(base::Section& section, const Stages& stages, Real start);
 
 }  // namespace sprekk::model

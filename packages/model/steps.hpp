@@ -1,4 +1,4 @@
-// The time steps of a run: those of its scene, or chosen as it goes.
+// Time steps of a run: prescribed by the scene or adaptive.
 #pragma once
 
 #include "model/model.hpp"
@@ -12,43 +12,42 @@
 
 namespace sprekk::model {
 
-/// A step that a run keeps.
+/// Accepted step.
 struct StepTaken {
   solve::StepReport report = {};
-  Real begin = 0, end = 0;         ///< end: where it was to end
-  bool at_time = true;             ///< it ends at a time that the scene names
-  std::string stage = "";          ///< that it belongs to; empty: none has begun
-  bool begins_stage = false;       ///< the model has changed before it
-  fields::StepErrors errors = {};  ///< relative, of steps that are chosen
-  int n_rejected = 0;              ///< attempts that were taken back
-  int rejected_iterations = 0;     ///< of Newton's method in them
-  std::string warning = "";        ///< where it errs more than it should
+  Real begin = 0, end = 0;         ///< planned begin and end, s
+  bool at_time = true;             ///< ends at a time given by the scene
+  std::string stage = "";          ///< stage of the step; empty before the first stage
+  bool begins_stage = false;       ///< the model changed before this step
+  fields::StepErrors errors = {};  ///< relative errors of adaptive steps
+  int n_rejected = 0;              ///< rejected attempts
+  int rejected_iterations = 0;     ///< Newton iterations in rejected attempts
+  std::string warning = "";        ///< set if the error exceeds its tolerance
 };
 
-/// Takes a model through the section Time of its scene. A host that lets steps be chosen uses it as a run does.
-/// Members are collective unless they return stored data.
+/// Driver of a model through the section Time of its scene. A host with adaptive steps uses it as a run does. Members
+/// are collective unless they return stored data.
 class Steps {
  public:
-  /// From the model's present state; it is referred to.
+  /// Begins at the present state of the model, to which it refers.
   explicit Steps(Model& model);
 
-  bool any() const { return next_ < times_.size(); }  ///< that are ahead
-  Real share_done() const;                            ///< of the time from start to end
-  int n_left() const { return control_ ? 0 : static_cast<int>(times_.size() - next_); }  ///< 0 if they are chosen
-  /// Takes the next step, and those that are rejected back. Where one fails or is stopped, so says the report.
+  bool any() const { return next_ < times_.size(); }  ///< steps remain
+  Real share_done() const;                            ///< completed fraction of the time from start to end
+  int n_left() const { return control_ ? 0 : static_cast<int>(times_.size() - next_); }  ///< 0 for adaptive steps
+  /// Takes the next step; rejected attempts are reverted. The report shows whether the step failed or was stopped.
   StepTaken take();
 
-  /// Brings the model to the stage at time t, of a model that is to be brought to a state there; `begun`: if a stage
-  /// begins then, to that.
+  /// Sets the stage of a model that will be restored to time t. If a stage begins at t, `begun` selects it.
   void go_to_stage_at(Real t, bool begun);
-  /// Whether the present stage begins at the present time: no step of it is taken.
+  /// Returns true if the present stage begins at the present time and has no step yet.
   bool is_at_begin_of_stage() const;
-  /// The last stage that has begun; empty: none.
+  /// Last stage that has begun; empty if there is none.
   std::string stage() const { return n_begun_ > 0 ? stages_[n_begun_ - 1].name : ""; }
 
-  /// What the next step's length depends on besides the model.
+  /// Data besides the model that determine the length of the next step.
   nlohmann::json memory() const;
-  void resume(const nlohmann::json& memory);  ///< of a model that was brought to another time
+  void resume(const nlohmann::json& memory);  ///< for a model restored to another time
 
  private:
   bool is_close(Real a, Real b) const;
@@ -60,12 +59,12 @@ class Steps {
   std::pair<Real, Real> next_attempt();
 
   Model& model_;
-  std::vector<Real> times_, knots_;            // that must be met; of them, where loads turn
-  std::size_t next_ = 0;                       // of times_, that is ahead
-  std::vector<StagedScene> stages_;            // by their times
-  std::size_t n_begun_ = 0;                    // of them
-  bool begun_before_ = false;                  // the next step begins a stage, to which the model was brought
-  std::optional<solve::StepControl> control_;  // of steps that are chosen
+  std::vector<Real> times_, knots_;            // times that must be met; those at which the slope of loads changes
+  std::size_t next_ = 0;                       // index of the next entry of times_
+  std::vector<StagedScene> stages_;            // ordered by time
+  std::size_t n_begun_ = 0;                    // number of begun stages
+  bool begun_before_ = false;                  // the next step begins a stage of a restored model
+  std::optional<solve::StepControl> control_;  // control of adaptive steps
 };
 
 }  // namespace sprekk::model
