@@ -14,11 +14,11 @@ using nlohmann::json;
 namespace {
 
 constexpr int most_runs = 60;
-constexpr Real marked_share = 0.5;   ///< of the sum of indicators that marked cells have
-constexpr Real share_of_time = 0.3;  ///< of the error that is asked for
-constexpr int most_halvings = 6;     ///< of steps
+constexpr Real marked_share = 0.5;   ///< share of the indicator sum in the marked cells
+constexpr Real share_of_time = 0.3;  ///< of the tolerance
+constexpr int most_halvings = 6;     ///< of time steps
 
-/// Null for what is not known.
+/// Converts unknown (infinite) values to null.
 json number(Real value) { return std::isfinite(value) ? json(value) : json(); }
 
 std::string percent(Real part, Real whole) {
@@ -29,7 +29,8 @@ std::string percent(Real part, Real whole) {
 
 std::string Adaptation::Verdict::line() const {
   const auto size = [](Real x) { return std::isfinite(x) ? fmt::format("{:.2g}", x) : std::string("unknown"); };
-  const bool known = std::isfinite(error) && error > 0 && value != 0;  // two digits of the error, as of the value
+  const bool known =
+      std::isfinite(error) && error > 0 && value != 0;  // two digits of the error, and as many decimals of the value
   const int digits = known ? static_cast<int>(std::ceil(std::log10(std::abs(value) / error))) + 2 : 4;
   return fmt::format("{}: {:.{}g} {} +- {} ({}, asked {}), space {}, time {}", title, value, std::clamp(digits, 4, 12),
                      unit, size(error), percent(error, value), percent(asked, value), size(space), size(time));
@@ -37,7 +38,7 @@ std::string Adaptation::Verdict::line() const {
 
 namespace {
 
-/// Two steps for each.
+/// Returns a schedule with each step divided into two.
 Time halved(const Time& time) {
   Time result = time;
   if (!time.schedule) {
@@ -53,7 +54,7 @@ Time halved(const Time& time) {
   return result;
 }
 
-/// The quantities of a scene at its end; none: a step failed. Collective.
+/// Returns the values of the quantities at the end of the scene; empty if a step fails. Collective.
 std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> comm) {
   Model model(scene, comm);
   Steps steps(model);
@@ -73,8 +74,8 @@ std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> co
 
 }  // namespace
 
-/// Errors of implicit steps fall with their length: what halving changes is half of the error before, and all of that
-/// after it.
+/// Chooses the time steps. For implicit Euler the error is proportional to the step. The change by halving is then half
+/// of the error before and all of the error after halving. The tolerated time error is share_of_time of the tolerance.
 void Adaptation::choose_steps(Scene scene, RCP<const Comm> comm) {
   auto values = values_at_end(scene, comm);
   for (int k = 0; k < most_halvings && !values.empty(); ++k) {
@@ -104,9 +105,9 @@ void Adaptation::prepare(Scene& scene, RCP<const Comm> comm) {
   scene.time = *time_;
 }
 
-/// Were errors to fall by the same factor r = E_k / E_(k-1) as estimates, the change since the last mesh would be
-/// e_(k-1) - e_k, hence e_k = r / (1 - r) times it. r is taken to be between 1/3 and 2/3. An estimate that falls to
-/// less than 2^-order at once may be luck, and is not believed at once.
+/// Computes the spatial error e_k. If errors decrease by the factor r = E_k / E_(k-1) of their estimates E, the change
+/// of the value is e_(k-1) - e_k, thus e_k = r / (1 - r) times the change. r is limited to [1/3, 2/3]. A decrease of
+/// the estimate below 2^-order in one refinement may be accidental and is not accepted immediately.
 Real Adaptation::space_error(const std::string& name) const {
   const auto& now = runs_.back().estimates.at(name);
   if (runs_.size() < 2) return now.error;
@@ -121,7 +122,7 @@ bool Adaptation::reached() const {
   return std::all_of(verdicts_.begin(), verdicts_.end(), [](const auto& verdict) { return verdict.reached; });
 }
 
-/// Which of the limits forbids a finer mesh, as far as the last one tells; empty: none.
+/// Returns a limit that would be exceeded on a finer mesh, extrapolated from the last run; empty if there is none.
 std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const {
   const auto& run = runs_.back();
   const Real took = run.seconds - (runs_.size() > 1 ? runs_[runs_.size() - 2].seconds : 0);

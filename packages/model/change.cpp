@@ -10,13 +10,13 @@ namespace sprekk::model {
 
 namespace {
 
-Teuchos::ParameterList without_free_sections(Scene scene) {  // which describe() could change
+Teuchos::ParameterList without_free_sections(Scene scene) {  // copy, because describe() could change it
   auto list = base::effective(scene, "Sprekk");
   for (const char* name : {"Output", "Probes", "Stages"}) list.remove(name, false);
   return list;
 }
 
-/// Of an array without elements, as of an entry that is absent, nothing.
+/// Text of an entry; empty for absent entries and for arrays without elements.
 std::string text_of(const Teuchos::ParameterList& list, const std::string& name) {
   if (list.isSublist(name)) return base::to_xml(list.sublist(name));
   const auto text = list.isParameter(name) ? base::value_text(list.getEntry(name)) : "";
@@ -30,7 +30,7 @@ std::set<std::string> names_in(const Teuchos::ParameterList& a, const Teuchos::P
   return names;
 }
 
-/// Calls tell(path, name, before, after) for all entries and sections with fixed names that differ.
+/// Calls tell(path, name, before, after) for all differing entries and sections with fixed names.
 template <class Tell>
 void for_fixed(const Teuchos::ParameterList& before, const Teuchos::ParameterList& after,
                const std::set<std::string>& fixed, const std::string& path, const Tell& tell) {
@@ -55,7 +55,7 @@ std::set<std::string> fixed_entries() {
   return names;
 }
 
-/// "is 2e10, was 1e10"
+/// Text such as "is 2e10, was 1e10".
 std::string difference(const Teuchos::ParameterList& before, const Teuchos::ParameterList& after,
                        const std::string& name) {
   const auto text = [&](const auto& list) {
@@ -65,8 +65,8 @@ std::string difference(const Teuchos::ParameterList& before, const Teuchos::Para
   return fmt::format("is {}, was {}", text(after), text(before));
 }
 
-/// Of the rock of regions: which material it is may change, as long as the entries of both agree. What fills a region
-/// that was excavated is any.
+/// Compares the rock of regions. The material may be another one if the entries of both agree. A refilled region may
+/// have any material.
 void compare_rock(const Scene& before, const Scene& after, const std::set<std::string>& fixed,
                   std::vector<std::string>& lines) {
   std::set<std::string> regions = {"bulk"};
@@ -92,8 +92,8 @@ void compare_places(const std::string& what, const std::map<std::string, Place>&
                                   fields::name_of(old->second.entity)));
 }
 
-/// The values of a field, [owned entity, component], from one part of a mesh to another one. Entities that only the
-/// latter has keep theirs.
+/// Copies the values of a field, [owned entity, component], from one part of a mesh to another. Entities only in the
+/// target retain their values.
 void carry(const fields::Field& field, const mesh::Mesh& whole, const mesh::Mesh& from, const View<Real**>& values,
            const mesh::Mesh& to, const View<Real**>& carried) {
   const int n = field.n_components;

@@ -25,7 +25,7 @@ bool Checkpointing::is_due(int n_steps, bool last) const {
   if (!times) return false;
   if (last || (times->steps && n_steps % *times->steps == 0)) return true;
   const std::chrono::duration<Real, std::ratio<60>> passed = std::chrono::steady_clock::now() - last_;
-  int due = times->minutes && passed.count() >= *times->minutes;  // by the clock of rank 0
+  int due = times->minutes && passed.count() >= *times->minutes;  // clock of rank 0
   Teuchos::broadcast(*model_.system().comm(), 0, 1, &due);
   return due != 0;
 }

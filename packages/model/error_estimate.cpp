@@ -19,7 +19,7 @@ using assembly::OutputField;
 
 namespace {
 
-constexpr Real solve_tolerance = 1e-6;  ///< of an iterative solver; an estimate needs no more
+constexpr Real solve_tolerance = 1e-6;  ///< of iterative solvers; sufficient for estimates
 
 const std::vector<Real>& values_of(const std::vector<OutputField>& outputs, const std::string& name) {
   return std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; })->values;
@@ -32,7 +32,7 @@ std::unique_ptr<physics::StressRecovery> make_recovery(const Model& model,
                                        physics::elasticity(model.scene(), model.mesh()));
 }
 
-/// part / whole; close to 0 where the whole is nothing but round-off of something as large as scale.
+/// Returns part / whole, with a small result if the whole is only round-off of quantities of the given scale.
 Real ratio_of(Real part, Real whole, Real scale) { return part == 0 ? 0 : part / std::max(whole, 1e-10 * scale); }
 
 }  // namespace
@@ -236,7 +236,7 @@ physics::ByField<RCP<const fields::Vector>> ErrorEstimator::displacement(const f
   return fields;
 }
 
-/// What the stress leaves over.
+/// Adds the residual forces of the stress error to a right side.
 void ErrorEstimator::add_stress(const physics::StressError& stress, fields::BlockVector& right_side) {
   auto& system = model_.system();
   for (std::size_t k = 0; k < blocks_.size(); ++k)
@@ -247,8 +247,8 @@ void ErrorEstimator::add_stress(const physics::StressError& stress, fields::Bloc
                                      stress.forces);
 }
 
-/// With M what is stored, rows have now (M - M_old) - before (M_old - M_older), see assembly::Rates, and M_old errs,
-/// too. What is stored artificially is none of the exact solution's.
+/// Adds the storage error of previous steps. With storage M, the rows contain now (M - M_old) - before (M_old -
+/// M_older), see assembly::Rates, and M_old has an error too. The exact solution has no artificial storage.
 void ErrorEstimator::add_before(fields::BlockVector& right_side) {
   auto& system = model_.system();
   if (!system.has_rates()) return;
@@ -263,8 +263,8 @@ void ErrorEstimator::add_before(fields::BlockVector& right_side) {
   stored_[0].clear();
 }
 
-/// With a lifting v of the unknowns that a condition prescribes, its reaction is a(u, v) - f(v), and what it lacks
-/// a(delta, v) - rho(v), summed over v: the rows of delta less the forces in them.
+/// Estimates the errors of unknowns and reactions. With a lifting v of the prescribed unknowns, a reaction is a(u, v) -
+/// f(v). Its error is a(delta, v) - rho(v), summed over v: the rows of delta minus the forces in them.
 void ErrorEstimator::estimate_answer(fields::BlockVector right_side, const std::vector<OutputField>& outputs,
                                      ErrorEstimate& estimate) {
   auto& system = model_.system();
@@ -274,7 +274,7 @@ void ErrorEstimator::estimate_answer(fields::BlockVector right_side, const std::
   add_before(right_side);
   try {
     prescribe(right_side);
-  } catch (const Error& error) {  // on every rank: no value between nodes, where the step needs none
+  } catch (const Error& error) {  // the same on every rank: a condition has no value between nodes
     estimate.failure = error.what();
     return;
   }
@@ -298,8 +298,8 @@ void ErrorEstimator::estimate_answer(fields::BlockVector right_side, const std::
   if (recovery_ && !model_.mesh().fracture_names.empty()) estimate_jump(outputs, estimate);
 }
 
-/// Rows of tractions are those of the face law, linear in moves of jumps and tractions: what they make of a move asks
-/// for it.
+/// Adds the error at edges of contact zones. The traction rows are the face law, linear in increments of jumps and
+/// tractions. The load that causes an increment is therefore the Jacobian of the law times the increment.
 void ErrorEstimator::add_edges(fields::BlockVector& right_side) const {
   auto& system = model_.system();
   const auto& mesh = model_.mesh();

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* reduction = "strength reduction factor";
 
-/// Without entries where there is none.
+/// Sublist with the given name; empty if it does not exist.
 Teuchos::ParameterList sublist_of(const Teuchos::ParameterList& list, const std::string& name) {
   return list.isSublist(name) ? list.sublist(name) : Teuchos::ParameterList();
 }
@@ -54,7 +54,7 @@ void check(const Model& model) {
 
 bool stands(const solve::StepReport& report) { return report.converged && report.loose.empty(); }
 
-/// What moves, or why Newton's method failed.
+/// Floating blocks after convergence, or the reason of the failure.
 std::string reason_of(const solve::StepReport& report) {
   if (report.converged) return report.loose;
   const std::string found = "no equilibrium found: ";
@@ -75,11 +75,11 @@ void run_to_the_end(Model& model, Real factor) {
                model.scene().origin, strength, factor / 2, reason_of(last));
 }
 
-/// Leaves the model in the state before where there is no equilibrium.
+/// Tests a factor. Without an equilibrium, the model remains in its previous state.
 Reduction reduce(Model& model, const Scene& own, Real factor) {
   try {
     model.change(reduced(own, factor));
-  } catch (const Error& error) {  // the same on every rank: such joints are none
+  } catch (const Error& error) {  // the same on every rank: invalid joint properties
     return {factor, false, 0, error.what()};
   }
   const auto report = model.find_equilibrium();
@@ -95,7 +95,7 @@ FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> co
   Model model(reduced(read_scene(*comm, options.scene, options.overrides), options.first), comm);
   check(model);
   run_to_the_end(model, options.first);
-  const Scene own = reduced(model.scene(), 1 / options.first);  // with what stages have changed
+  const Scene own = reduced(model.scene(), 1 / options.first);  // including the changes by stages
   FactorOfSafety found{.least = options.first, .lost = {}, .reductions = {}, .states = {}};
   const auto holds = [&](Real factor) {
     found.reductions.push_back(reduce(model, own, factor));

@@ -15,14 +15,14 @@ using nlohmann::json;
 
 namespace {
 
-/// A hash of numbers, small enough for sums of them over all entities of a mesh.
+/// Hash of numbers, small enough for its sum over all entities of a mesh.
 template <class T>
 long long hash(const std::vector<T>& numbers) {
   const std::string_view bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T));
   return static_cast<long long>(std::hash<std::string_view>()(bytes) >> 33);
 }
 
-/// Sums over all cells with their nodes, fracture faces and boundary faces, by their global numbers.
+/// Sums of hashes of all cells with their nodes, fracture faces and boundary faces, with their global numbers.
 json mesh_hash(const mesh::Mesh& mesh) {
   std::array<long long, 3> here{};
   const int dim = mesh.dim(), n = mesh.nodes_per_cell();
@@ -58,13 +58,13 @@ json unknowns(const assembly::System& system) {
   return all;
 }
 
-/// Whether a section may be another one where a run goes on, or is compared otherwise.
+/// Returns true for sections that may change at a restart, or that are compared separately.
 bool is_free(const std::string& section) {
   constexpr const char* free[] = {"Mesh", "Mesh file", "Tables", "Time", "Solver", "Output", "Probes", "Stages"};
   return std::find(std::begin(free), std::end(free), section) != std::end(free);
 }
 
-/// The points of `later` begin with those of `earlier`.
+/// Returns true if `later` begins with all points of `earlier`.
 bool extends(const json& earlier, const json& later) {
   return earlier.size() <= later.size() && std::equal(earlier.begin(), earlier.end(), later.begin());
 }

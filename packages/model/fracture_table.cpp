@@ -20,7 +20,7 @@ namespace {
 
 constexpr Real missing = std::numeric_limits<Real>::quiet_NaN();
 
-/// Sums and maxima over the faces of groups.
+/// Groups of faces with sums and maxima over their faces.
 class Groups {
  public:
   Groups(const mesh::Mesh& mesh, Grouping grouping)
@@ -30,7 +30,7 @@ class Groups {
 
   std::size_t n() const { return n_; }
 
-  /// Of area * value(face, component), [group * n + component].
+  /// Integrals of value(face, component) over the area, [group * n + component].
   template <class Value>
   std::vector<Real> integrals(int n, const Value& value) const {
     std::vector<Real> sums(n_ * n, 0);
@@ -56,7 +56,7 @@ class Groups {
   std::size_t n_;
 };
 
-/// Adds what one output tells.
+/// Adds the columns of one output.
 class Adder {
  public:
   Adder(const Groups& groups, const std::vector<Real>& area, std::vector<FractureColumn>& columns)
@@ -81,7 +81,7 @@ class Adder {
   void add_maxima(const OutputField& output, const std::string& name) {
     auto maxima = groups_.maxima(output.values);
     for (std::size_t k = 0; k < maxima.size(); ++k)
-      if (area_[k] == 0) maxima[k] = missing;  // without a face, all of it joined to others
+      if (area_[k] == 0) maxima[k] = missing;  // group without faces, all merged with others
     columns_.push_back({name, "", output.unit, 1, maxima});
   }
 
@@ -104,7 +104,8 @@ class Adder {
   std::vector<FractureColumn>& columns_;
 };
 
-/// What results tell of single fractures: vectors in the global frame say less, for normals may point either way.
+/// Returns true for columns of single fractures. Vectors in the global frame are omitted because their sign depends on
+/// the arbitrary normal.
 bool is_of_singles(const FractureColumn& column) { return column.frame != "global" && column.name != "area"; }
 
 }  // namespace
@@ -160,7 +161,7 @@ json described_singles(const mesh::Mesh& mesh) {
   const auto normal = groups.integrals(3, [&](LocalIndex f, int c) { return faces[f].frame[0][c]; });
   const auto degrees = [](Real y, Real x, Real period) {
     const Real angle = std::fmod(std::atan2(y, x) * 180 / M_PI + 360, period);
-    return period - angle < 1e-9 ? 0 : angle;  // of rounding below 0
+    return period - angle < 1e-9 ? 0 : angle;  // rounding error below 0
   };
   json all = json::array();
   for (std::size_t k = 0; k < groups.n(); ++k) {
@@ -173,7 +174,8 @@ json described_singles(const mesh::Mesh& mesh) {
       n[c] = normal[3 * k + c] / size;
       one["normal"].push_back(n[c]);
     }
-    const Real up = n[2] < 0 ? -1 : 1;  // the plane dips to where its upward normal leans, right of the strike
+    const Real up =
+        n[2] < 0 ? -1 : 1;  // the plane dips towards the horizontal part of its upward normal, right of the strike
     if (mesh.dim() == 2)
       one["strike"] = degrees(n[1], -n[0], 180);
     else

@@ -12,10 +12,10 @@ using assembly::OutputField;
 
 namespace {
 
-/// What terms of both signs may hide of their sum: so much of their sizes counts in any case. Tractions that faces take
-/// over from each other cancel almost wholly.
+/// Minimum share of the absolute sum in the error of a sum with cancellation. Tractions cancel almost completely when
+/// faces exchange load.
 constexpr Real cancelled_jumps = 0.3, cancelled_tractions = 0.1;
-/// Of the area that slips, or slipped when cells were weighted last, so much has to be other for new weights.
+/// Share of the slipping area that must differ from the previous weighing to compute new weights.
 constexpr Real changed = 0.1;
 
 const OutputField& named(const std::vector<OutputField>& outputs, const std::string& name) {
@@ -26,7 +26,7 @@ bool has(const std::vector<OutputField>& outputs, const std::string& name) {
   return std::any_of(outputs.begin(), outputs.end(), [&](const auto& o) { return o.name == name; });
 }
 
-/// A vector of a face in its frame: n, t1, t2.
+/// Vector of a face in its frame: n, t1, t2.
 std::array<Real, 3> of_face(const OutputField& field, LocalIndex f) {
   std::array<Real, 3> v{};
   std::copy_n(&field.values[f * field.n_components], field.n_components, v.begin());
@@ -70,7 +70,7 @@ void Goals::follow_slip(const std::vector<OutputField>& outputs, const ErrorEsti
   plastic_ = plastic.values;
 }
 
-/// Sums over faces: area, value, error with its sign and without.
+/// Estimates a quantity from sums over faces: area, value, signed and absolute error.
 Goals::Estimate Goals::of_fractures(const Quantity& quantity, const std::vector<OutputField>& outputs,
                                     const ErrorEstimate& estimate) const {
   const bool is_mean = quantity.what == "slip" || quantity.what == "opening", known = !estimate.improved.empty();
@@ -123,9 +123,9 @@ Goals::Estimate Goals::of_boundary(const Quantity& quantity, const ErrorEstimate
           known ? std::abs(sum(estimate.reactions)) : std::numeric_limits<Real>::infinity()};
 }
 
-/// [owned cell] bounds of what a cell's error adds to that of the quantity, up to a factor: of mean jumps the product
-/// of the norms of the error of the stress and of that of the answer to unit forces there, of others the square of the
-/// first.
+/// Returns for each owned cell a bound of its contribution to the error of the quantity, up to a factor. For mean jumps
+/// it is the product of the energy norms of the stress error and of the stress error for unit forces at the faces. For
+/// other quantities it is the square of the first norm.
 std::vector<Real> Goals::energies(const Quantity& quantity, const std::vector<OutputField>& outputs,
                                   const ErrorEstimate& estimate, ErrorEstimator& estimator) const {
   const bool is_slip = quantity.what == "slip";
@@ -146,7 +146,7 @@ std::vector<Real> Goals::energies(const Quantity& quantity, const std::vector<Ou
 }
 
 bool Goals::others_slip() const {
-  std::array<Real, 2> areas{};  // of faces that slip in one of both, and in one alone
+  std::array<Real, 2> areas{};  // slipping in one or both states, and in exactly one
   for (std::size_t f = 0; f < slips_.size(); ++f) {
     const bool before = !weighted_.empty() && weighted_[f];
     const Real area = model_.mesh().fracture_faces[f].area;
@@ -163,7 +163,7 @@ bool Goals::need(bool last) const {
          std::any_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.what == "slip"; });
 }
 
-/// What is of a balance with an error of its own; false: it is of another.
+/// Adds a quantity of a balance with its own error estimate; returns false for other quantities.
 bool Goals::add_flux(const std::string& name, const Quantity& quantity, const ErrorEstimate& estimate,
                      ErrorEstimator& estimator, bool last) {
   if (quantity.what == "flux") {
@@ -189,7 +189,8 @@ void Goals::add_to_bound(const std::string& name, const std::vector<Real>& share
   for (std::size_t c = 0; c < bound.size(); ++c) bound[c] = std::max(bound[c], shares[c]);
 }
 
-/// [owned cell] with those of the fluxes of all steps; of each kind the whole mesh has as much.
+/// Adds the energies of the fluxes of all steps to those of the stress [owned cell]. Each kind is scaled to the same
+/// sum over the mesh.
 std::vector<Real> Goals::all_energies(const std::vector<Real>& of_stress) const {
   std::vector<Real> result(model_.mesh().n_owned_cells, 0);
   const auto add = [&](const std::vector<Real>& energies) {
@@ -228,7 +229,7 @@ void Goals::weigh(const std::vector<OutputField>& outputs, const ErrorEstimate& 
   const bool others = others_slip();
   if (others || last) weighted_ = slips_;
   for (const auto& [name, quantity] : model_.scene().accuracy->quantities) {
-    if (!quantity.is_of_outputs() && quantity.what != "stress") continue;  // add() has them
+    if (!quantity.is_of_outputs() && quantity.what != "stress") continue;  // already evaluated in add()
     if (!last && !(others && quantity.what == "slip")) continue;
     auto energies = this->energies(quantity, outputs, estimate, estimator);
     if (!fluxes_.back().empty()) energies = all_energies(energies);
@@ -256,7 +257,7 @@ std::vector<LocalIndex> marked(const Comm& comm, const std::vector<Real>& indica
   for (const Real value : indicators)
     if (value > 0) highest = std::max(highest, bin(value));
   highest = base::max_over_ranks(comm, highest);
-  std::vector<long long> counts(n_bins, 0);  // from the highest bin down
+  std::vector<long long> counts(n_bins, 0);  // starting at the highest bin
   const auto place = [&](Real value) { return value > 0 ? highest - bin(value) : n_bins; };
   for (const Real value : indicators)
     if (const int k = place(value); k < n_bins) ++counts[k];

@@ -27,7 +27,7 @@ void for_each_text(const Teuchos::ParameterList& list, const Visit& visit) {
   }
 }
 
-/// What stands in the parentheses of each call of a function in a text.
+/// Returns the text in the parentheses of each call of a function.
 std::vector<std::string> arguments(const std::string& text, const std::string& function) {
   std::vector<std::string> all;
   for (auto at = text.find(function + '('); at != text.npos; at = text.find(function + '(', at + 1)) {
@@ -44,7 +44,7 @@ std::vector<std::string> arguments(const std::string& text, const std::string& f
   return all;
 }
 
-/// a and b where the text means a + b t, b not zero, with times of the order of `size`; none where it does not.
+/// Returns a and b for a text that equals a + b t with nonzero b, for times of the order of `size`; otherwise nothing.
 std::optional<std::array<Real, 2>> linear_in_time(const std::string& text, const Scene& scene, Real size) {
   try {
     base::Expression f(text);
@@ -55,7 +55,7 @@ std::optional<std::array<Real, 2>> linear_in_time(const std::string& text, const
           std::abs(value - a - b * t) > 1e-12 * (std::abs(a) + std::abs(b * size)))
         return {};
     return b != 0 ? std::make_optional(std::array<Real, 2>{a, b}) : std::nullopt;
-  } catch (const Error&) {  // not defined there
+  } catch (const Error&) {  // undefined at a tested time
     return {};
   }
 }

@@ -19,7 +19,7 @@ namespace sprekk::model {
 
 namespace {
 
-/// The element of that name, or an Error that lists those there are.
+/// Returns the element with the given name. Throws an Error that lists the available names.
 template <class T, class Name>
 T& named(std::vector<T>& all, const std::string& name, const Name& name_of, const char* what) {
   std::vector<std::string> names;
@@ -31,7 +31,7 @@ T& named(std::vector<T>& all, const std::string& name, const Name& name_of, cons
                           base::did_you_mean(name, names)));
 }
 
-/// The name of a block's unknowns in a checkpoint.
+/// Key of the unknowns of a block in a checkpoint.
 std::string key_of(const fields::Block& block) { return "unknowns: " + block.name; }
 
 void redistribute(const fields::Vector& from, fields::Vector& to) {
@@ -48,7 +48,8 @@ physics::Modules make_modules(const Scene& scene, const mesh::Mesh& mesh) {
 
 namespace {
 
-/// A condition on the end of a fracture that is not on its boundary would hold nowhere. Collective.
+/// Throws an Error for conditions on ends of fractures not on the given boundary, which would have no effect.
+/// Collective.
 void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
   const auto n = mesh.boundary_names.size();
   std::vector<int> here(n * mesh.fracture_names.size(), 0);
@@ -73,7 +74,7 @@ void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
     : more_modules_(more_modules), timers_(rcp(new base::Timers)), time_(scene.time.start) {
   auto draft = prepared(scene);
-  std::string unheld;  // by the scene, but perhaps by modules; known where the whole mesh is
+  std::string unheld;  // rock unsupported by the scene, perhaps supported by host modules; on rank 0
   {
     const auto scope = timers_->scope("mesh");
     whole_mesh_ = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
@@ -90,7 +91,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   start_solver();
 }
 
-/// `unheld`: what of the rock modules must hold, empty: all is held.
+/// Makes the mesh and the modules. `unheld`: message on rock that host modules must support; empty if all is supported.
 Model::Draft Model::drafted(Scene scene, const std::string& unheld) const {
   const auto& comm = *whole_mesh_->comm;
   Draft draft{std::move(scene), mesh::without_regions(whole_mesh_, draft.scene.excavated()), {}};
@@ -120,7 +121,7 @@ std::unique_ptr<assembly::System> Model::make_system(Draft draft) const {
   return system;
 }
 
-/// Throws what is wrong with a change.
+/// Makes the mesh and the modules of a change. Throws an Error with the reasons if the change is invalid.
 Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) const {
   auto prepared = model::prepared(changed);
   const auto refuse = [&](const std::vector<std::string>& reasons) {
@@ -142,12 +143,12 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
     for (auto& line : physics.refuses_change_in(*draft.mesh, before, draft.scene)) lines.push_back(std::move(line));
   });
   refuse(lines);
-  auto now = drafted(before);  // modules tell their storage before they are bound
+  auto now = drafted(before);  // storage of modules must be read before they are bound
   refuse(misfits(storage_of(now.modules, *now.mesh), storage_of(draft.modules, *draft.mesh)));
   return draft;
 }
 
-/// Throws what is wrong with conditions where they meet, or with expressions.
+/// Throws an Error for contradictory conditions, or for invalid expressions, at the begin of a stage.
 void Model::check_start(Draft draft, const StagedScene& stage) const {
   try {
     make_system(std::move(draft))->set_time(stage.time, 0);
@@ -158,7 +159,7 @@ void Model::check_start(Draft draft, const StagedScene& stage) const {
   }
 }
 
-/// So that no entry of a stage is found wrong when its time has come.
+/// Checks all stages in advance, so that no stage fails when its time comes.
 void Model::check_stages() const {
   const Scene* before = &scene_;
   const auto stages = staged_scenes(scene_);
@@ -177,7 +178,7 @@ void Model::change(const Scene& changed) {
   auto scene = draft.scene;
   auto system = make_system(std::move(draft));
   auto x = system->initial();
-  system->prescribe(time_, x);  // where there was nothing before
+  system->prescribe(time_, x);  // for entities that did not exist before
   carry_over(*whole_mesh_, *system_, x_, *system, x);
   system->tell_unbalanced(x);
   scene_ = std::move(scene);
@@ -284,7 +285,7 @@ void Model::restore(const io::Checkpoint& checkpoint) {
   for (const auto& [field, values] : system_->histories()) {
     fields::Vector vector(fields::owned_map(field, mesh()));
     const auto kept = checkpoint.vectors.find(field.name);
-    if (kept == checkpoint.vectors.end()) continue;  // rates, of steps whose length was not chosen
+    if (kept == checkpoint.vectors.end()) continue;  // rates, absent after steps of prescribed length
     redistribute(*kept->second, vector);
     Kokkos::deep_copy(values, fields::by_entity(vector, field.n_components));
   }

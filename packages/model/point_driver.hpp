@@ -1,4 +1,4 @@
-// Newton's method for the state of one point of a joint, step by step along a path.
+// Newton's method for one point of a joint, step by step along a path.
 #pragma once
 
 #include "base/check.hpp"
@@ -19,28 +19,30 @@ namespace sprekk::model {
 
 inline constexpr const char* axes[] = {"n", "t1", "t2"};
 
-/// "n", then "t" in 2D, "t1" and "t2" in 3D.
+/// Axis names: "n", then "t" in 2D, "t1" and "t2" in 3D.
 inline const char* axis(std::size_t dim, std::size_t i) { return dim == 2 && i == 1 ? "t" : axes[i]; }
 
-/// Newton's method on R(w, lambda) = 0 and one control equation per component; unknowns w, lambda.
+/// Newton's method for R(w, lambda) = 0 and one control equation per component. Unknowns are the jump w, m, and the
+/// traction lambda, Pa, in the joint frame.
 template <int dim>
 class PointDriver {
  public:
   PointDriver(const PointPath& point, const Material& material) : point_(point), law_(material.joint({0, 0, 0}).law) {
     for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
-    law_.sliding_compliance = 0;  // it steers the iteration on meshes
+    law_.sliding_compliance = 0;  // only used to steer the iteration on meshes
     if (!point_.initial_traction.empty()) press();
   }
 
-  /// The state before the first step: without traction, or under the initial one.
+  /// State before the first step: without traction, or under the initial traction.
   PointState initial(Real t) {
     Real f[2 * dim], J[4 * dim * dim];
     c_ = laws::augmentation(law_, typical_stiffness());
     return state(t, evaluate(f, J));
   }
 
-  /// The states from the last time `from` to t: one, or where slip jumps also those before and after the jump.
+  /// Advances from the last time `from` to t, s. Returns one state, or also those before and after each slip jump.
+  /// Throws an Error if no state is found.
   std::vector<PointState> advance(Real from, Real t) {
     std::vector<PointState> states;
     for (int jumps = 0; jumps < most_jumps; ++jumps) {
@@ -65,12 +67,13 @@ class PointDriver {
     return states;
   }
 
-  /// Whether a tension above the present strength is prescribed at t: without a state, the faces fly apart.
+  /// Returns true if the tension prescribed at t exceeds the present strength. Then there is no state, and the joint
+  /// separates.
   bool is_pulled(Real t) const {
     const Real strength = law_.is_bonded() ? law_.cohesion(at_rest()).strength : 0;
     return control(0) == "traction" && point_.path[0]({0, 0, 0}, t) > strength;
   }
-  /// Goes to faces that are far apart and bear nothing, at the jumps along them that are prescribed at t.
+  /// Sets a fully open joint without traction. The prescribed tangential jumps at t apply.
   void part(Real t) {
     for (int i = 0; i < dim; ++i) d_[i] = point_.path[i]({0, 0, 0}, t);
     auto at = at_rest();
@@ -90,18 +93,18 @@ class PointDriver {
     std::copy_n(now, dim - 1, x_ + 1);
   }
 
-  /// How often the law was evaluated so far with its derivatives, once for each iteration of Newton's method.
+  /// Number of law evaluations with derivatives, one per residual evaluation.
   long evaluations() const { return evaluations_; }
 
  private:
-  static constexpr int most_jumps = 8;      // of slip in a step
-  static constexpr Real resolution = 1e-9;  // of the time at which slip jumps, in steps
-  static constexpr Real least_jump = 1e-6;  // of the slip of the step
-  static constexpr int samples = 32;        // of the slip of a step
+  static constexpr int most_jumps = 8;      // slip jumps per step
+  static constexpr Real resolution = 1e-9;  // of the time of a slip jump, relative to the step
+  static constexpr Real least_jump = 1e-6;  // relative to the slip of the step
+  static constexpr int samples = 32;        // points along the slip of a step
   static constexpr const char* not_converged = "Newton's method does not converge";
-  static constexpr Real of_controls = 0;  // stands for the constants of the projection by the controls
+  static constexpr Real of_controls = 0;  // marks projection constants derived from the controls
 
-  /// What a step changes.
+  /// Data changed by a step.
   struct Memory {
     Real x[2 * dim], plastic[dim - 1];
     std::vector<Real> kept;
@@ -119,14 +122,14 @@ class PointDriver {
     std::copy(memory.kept.begin(), memory.kept.end(), kept_.begin());
   }
 
-  /// Slip that jumps between two times, which are next to each other.
+  /// Slip jump between two adjacent times.
   struct Jump {
     Real from = 0, to = 0, size = 0;
     PointState before = {}, after = {};
   };
 
-  /// The first jump by more than `least` on the way from the state `begin`, at the time `from`, to t; leaves the driver
-  /// behind it. The time is found by bisection, up to it slip does not jump.
+  /// Finds the first jump larger than `least` between the state `begin` at the time `from` and t. Afterwards the driver
+  /// is at the state after the jump. The time is found by bisection; there is no slip jump before it.
   Jump jump_of_slip(const Memory& begin, Real from, Real t, Real least) {
     Jump jump{from, t};
     while (jump.to - jump.from > resolution * (t - from)) {
@@ -136,7 +139,7 @@ class PointDriver {
     }
     remember(begin);
     jump.before = jump.from > from ? step(jump.from) : state(from, laws::ContactState::stick);
-    for (Real gap = jump.to - jump.from;; gap *= 4) {  // in a step so short rounding may still find a state near
+    for (Real gap = jump.to - jump.from;; gap *= 4) {  // for very short steps rounding may still give a nearby state
       Real old[dim - 1];
       std::copy_n(p_old_, dim - 1, old);
       jump.after = step(jump.to);
@@ -149,7 +152,8 @@ class PointDriver {
     jump.after.remark = jump_in_words(jump);
     return jump;
   }
-  /// The state at t, from that at `from` on. Where there is none, tells by bisection up to when there is one.
+  /// Computes the state at t from the state at `from`. If there is none, bisection finds the last time with a state.
+  /// Throws an Error with this time.
   PointState step_or_last(Real from, Real t) {
     const Memory begin = memory();
     try {
@@ -197,7 +201,7 @@ class PointDriver {
         jump.size, shear(jump.before), shear(jump.after));
   }
 
-  /// The state at t, from the last one on.
+  /// Computes the state at t from the last state. Throws an Error if no start of the iteration succeeds.
   PointState step(Real t) {
     for (int i = 0; i < dim; ++i) d_[i] = point_.path[i]({0, 0, 0}, t);
     Real old[2 * dim];
@@ -223,7 +227,7 @@ class PointDriver {
     throw Error(fmt::format("t = {}: no state found for {}: {}", t, prescribed, beyond.empty() ? reason : beyond));
   }
 
-  /// Starts from the initial traction, and the jump that the joint has under it.
+  /// Sets the initial traction and the corresponding jump. Throws an Error for tension, or for shear above the bound.
   void press() {
     auto at = laws::contact<dim>(point_.initial_traction[0], laws::norm(p_old_), p_old_, p_old_, {kept_.data()});
     SPREKK_CHECK(at.lambda_n <= 0, "the initial traction is {} along the normal; it must press, or be 0", at.lambda_n);
@@ -239,15 +243,15 @@ class PointDriver {
     std::copy_n(base_, dim, x_ + dim);
   }
 
-  /// Where Newton's method starts, the last state, that stretched, one without traction, or one beyond a jump of slip,
-  /// and whether its steps are damped. These and the factor on the typical stiffness steer the iteration; which
-  /// solution is found, if there are several, depends on them.
+  /// Start of Newton's method: last state, elastically stretched state, state without traction, or state beyond a slip
+  /// jump; steps with or without damping. The start and the factor on the typical stiffness steer the iteration. If
+  /// there are several solutions, they determine the one that is found.
   struct Start {
     bool damped = false, released = false, elastic = false, beyond = false;
   };
 
-  /// Moves x to where what is prescribed only stretches a joint with a bond: a state that is whole comes before one
-  /// that is broken. False where there is none such to be expected.
+  /// Sets x as if the prescribed values deform a bonded joint elastically, so intact states are tried before broken
+  /// ones. Returns false if the joint has no bond or no elastic compliance.
   bool stretch() {
     bool stretched = false;
     for (int i = 0; i < dim && law_.is_bonded(); ++i) {
@@ -262,7 +266,7 @@ class PointDriver {
 
   const std::string& control(int i) const { return point_.control[i]; }
 
-  /// The stiffness of the column, else of the joint, else what the prescribed values suggest.
+  /// Stiffness of the column, otherwise of the joint, otherwise the ratio of prescribed values; Pa/m.
   Real typical_stiffness() const {
     Real k = 0, length = 0, stress = 0;
     for (int i = 0; i < dim; ++i) {
@@ -276,7 +280,7 @@ class PointDriver {
     return k == 0 ? 1 : k;
   }
 
-  /// Sizes of jump and traction at x, which changes are judged by; c is a typical stiffness.
+  /// Scales of jump, m, and traction, Pa, at x, for relative changes; c is a typical stiffness, Pa/m.
   void scales(Real c, Real (&scale)[2 * dim]) const {
     Real length = 1e-300;
     for (int i = 0; i < dim; ++i)
@@ -288,10 +292,12 @@ class PointDriver {
     }
   }
 
-  /// The constants of the projection, from the controls. A column is in series with the joint. A jump decides alone
-  /// whether the joint slides or parts: c_t is so large that |c_t (p - p_old)| is far above any traction, and c_n so
-  /// that c_n times the distance of the faces is far above the strength of a bond. A traction decides alone whether it
-  /// is pressed: c_n is so small that c_n times the distance of the faces is far below it.
+  /// Projection constants (Pa/m) derived from the controls.
+  /// * A column is in series with the joint: its stiffness.
+  /// * A prescribed jump alone determines sliding or opening: |c_t (w - p_old)| is much larger than any traction, and
+  ///   c_n times the distance of the sides much larger than the bond strength.
+  /// * A prescribed traction alone determines compression: c_n times the distance of the sides is much smaller than
+  ///   this traction.
   laws::Augmentation augmentation_of_controls(Real c) const {
     constexpr Real far = 1e3;
     const auto bond = law_.cohesion(at_rest());
@@ -313,9 +319,9 @@ class PointDriver {
     return {laws::augmentation(law_, c_n).normal, laws::augmentation(law_, c_t).tangential};
   }
 
-  /// Moves x to the state at the prescribed values; returns why there is none, or nothing. The constants of the
-  /// projection are those of the typical stiffness times the factor, or of the controls; a damped step is halved until
-  /// the residual falls.
+  /// Solves for the state at the prescribed values; returns the reason of a failure, or an empty text. The projection
+  /// constants use the typical stiffness times the factor, or the controls. A damped step is halved until the residual
+  /// decreases.
   std::string solve(Real factor, bool damped) {
     const Real c = typical_stiffness();
     for (int i = 0; i < dim; ++i) {
@@ -348,7 +354,7 @@ class PointDriver {
     return not_converged;
   }
 
-  /// The residual, each of its entries in its unit over that unit's size.
+  /// Norm of the residual, each entry divided by its scale.
   Real size_of(const Real (&f)[2 * dim], const Real (&scale)[2 * dim]) const {
     Real square = 0;
     for (int i = 0; i < dim; ++i) {
@@ -358,7 +364,7 @@ class PointDriver {
     return std::sqrt(square);
   }
 
-  /// Why the equations of a contact state do not determine jump and traction.
+  /// Reason why the equations of a contact state do not determine jump and traction.
   std::string undetermined(laws::ContactState state) const {
     const bool pulled = std::count(point_.control.begin() + 1, point_.control.end(), "traction") > 0;
     const bool pressed = control(0) == "traction" && d_[0] < 0;
@@ -370,15 +376,15 @@ class PointDriver {
     return not_converged;
   }
 
-  /// Whether the jump of a rigid joint is prescribed as it was at the end of the last step: then any traction that
-  /// friction bears obeys the law, and the joint keeps the last one.
+  /// Returns true if the prescribed jump of a rigid joint equals that of the last step. Any traction below the friction
+  /// bound is then admissible, and the joint retains its last traction.
   bool rests(int i) const {
     if (i == 0 || control(i) != "jump" || law_.elastic.initial_compliance() > 0) return false;
     const Real jump = rest_[i] + d_[i], last = p_old_[i - 1];
     return std::abs(jump - last) <= 1e-14 * std::max(std::abs(jump), std::abs(last));
   }
 
-  /// f and its column-major Jacobian J at x.
+  /// Computes f and its column-major Jacobian J at x.
   laws::ContactState evaluate(Real (&f)[2 * dim], Real (&J)[4 * dim * dim]) const {
     using Fad = Sacado::Fad::SFad<Real, 2 * dim>;
     ++evaluations_;
@@ -425,7 +431,7 @@ class PointDriver {
     return accepted;
   }
 
-  /// Jump and traction as they are, with the plastic jump of the last step.
+  /// State with the present jump and traction, and the plastic jump of the last step.
   PointState state(Real t, laws::ContactState contact) const {
     Real w[dim], lambda[dim], elastic[dim], plastic[dim];
     std::copy_n(x_, dim, w);
@@ -441,14 +447,14 @@ class PointDriver {
             strength(lambda[0])};
   }
 
-  /// The bound on |lambda_t| under a normal traction, after the slip so far.
+  /// Bound of |lambda_t| at a normal traction after the slip so far, Pa.
   Real strength(Real lambda_n) const {
     auto at = at_rest();
     at.lambda_n = std::min(lambda_n, Real(0));
     return std::max(law_.bound(at), Real(0));
   }
 
-  /// The contact with all that has been slipped, and no slip since.
+  /// Contact with the accumulated slip and no slip in the step.
   laws::Contact<Real> at_rest() const {
     laws::Contact<Real> at;
     at.dim = dim;
@@ -458,8 +464,8 @@ class PointDriver {
     return at;
   }
 
-  /// Whether on the way of the slip of a step friction falls faster than column and joint unload: then no states lead
-  /// from its begin to its end.
+  /// Returns true if friction decreases faster than column and joint unload, anywhere along the slip of the step. Then
+  /// no continuous path of states connects its begin and end.
   bool runs_away(const laws::Contact<Real>& end) const {
     const Real compliance = law_.compliance(end) + (control(1) == "column" ? 1 / stiffness_[1] : 0);
     for (int k = 0; k <= samples; ++k) {
@@ -473,7 +479,7 @@ class PointDriver {
     return false;
   }
 
-  /// Which strength the prescribed tension exceeds, with numbers; or nothing.
+  /// Message if the prescribed tension exceeds the tensile strength; otherwise empty.
   std::string beyond_strength() const {
     if (control(0) != "traction" || !law_.is_bonded()) return "";
     const Real strength = law_.cohesion(at_rest()).strength;
@@ -482,13 +488,13 @@ class PointDriver {
   }
 
   mutable long evaluations_ = 0;
-  std::vector<Real> beyond_;  // x of a state beyond a jump that is sought
+  std::vector<Real> beyond_;  // x of a state beyond a slip jump to be found
   const PointPath& point_;
   laws::Joint law_;
   laws::Augmentation c_;
-  std::vector<Real> kept_ = std::vector<Real>(law_.n_history(), 0);  // what the laws keep of the point
+  std::vector<Real> kept_ = std::vector<Real>(law_.n_history(), 0);  // history variables of the law at the point
   Real stiffness_[dim], d_[dim], x_[2 * dim] = {}, p_old_[dim - 1] = {};
-  Real base_[dim] = {}, rest_[dim] = {};  // the initial traction, and the jump under it
+  Real base_[dim] = {}, rest_[dim] = {};  // initial traction and its jump
 };
 
 }  // namespace sprekk::model
