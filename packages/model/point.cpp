@@ -18,7 +18,7 @@ PointCurve drive(const PointPath& path, const Material& material, const Time& ti
   PointCurve curve;
   const auto times = time.times();
   std::string step;
-  std::string apart;  // why there has been no state, since faces fly apart; empty: there is one
+  std::string apart;  // reason why the faces are separated, if they are
   try {
     PointDriver<dim> driver(path, material);
     curve.initial = driver.initial(time.start);
@@ -43,7 +43,7 @@ PointCurve drive(const PointPath& path, const Material& material, const Time& ti
   return curve;
 }
 
-/// As a field of CSV.
+/// Quotes a text as a field of CSV.
 std::string in_quotes(const std::string& text) {
   std::string quoted = "\"";
   for (char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
@@ -55,7 +55,7 @@ std::string in_quotes(const std::string& text) {
 void PointPath::describe(base::Section& s) {
   s.required(material, "material", "-", "name of a joint material, of this scene or of the library");
   s.required(control, "control", "-", "per component n, t[, t2] what is prescribed: jump, traction, or column");
-  std::string units;  // of the components
+  std::string units;  // units of the components
   for (const auto& what : control) units += (units.empty() ? "" : ", ") + std::string(what == "traction" ? "Pa" : "m");
   s.required(
       path, "path", units.empty() ? "m or Pa" : units,

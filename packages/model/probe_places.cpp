@@ -24,7 +24,7 @@ using mesh::operator*;
 
 namespace {
 
-/// The solution of the dim x dim system J d = r by Cramer's rule.
+/// Solves the dim x dim system J d = r by Cramer's rule.
 template <int dim>
 void solve(const Real (&J)[dim][dim], const Real (&r)[dim], Real (&d)[dim]) {
   if constexpr (dim == 2) {
@@ -42,14 +42,14 @@ void solve(const Real (&J)[dim][dim], const Real (&r)[dim], Real (&d)[dim]) {
   }
 }
 
-/// The shape functions at x of a cell that contains it; empty if it does not.
+/// Shape functions at x of a cell that contains x; empty for other cells.
 template <Shape shape>
 std::vector<Real> shape_functions_at(const Mesh& mesh, LocalIndex cell, const Vector& x) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   constexpr bool simplex = mesh::is_simplex(shape);
   Real X[n][dim], N[n], dN[n][dim], xi[dim], d[dim], origin[dim];
   assembly::gather_host<shape>(mesh, cell, X);
-  Real farthest = 0, size = 0;  // coordinates may be large next to the cell
+  Real farthest = 0, size = 0;  // coordinates may be large compared with the cell
   for (int i = 0; i < dim; ++i) {
     origin[i] = X[0][i];
     farthest = std::max(farthest, std::abs(origin[i]));
@@ -77,7 +77,7 @@ std::vector<Real> shape_functions_at(const Mesh& mesh, LocalIndex cell, const Ve
     }
   }
   if (!(change < 1e-10)) return {};
-  Real least = simplex ? 1 : std::numeric_limits<Real>::max();  // distance to the sides, in the reference cell
+  Real least = simplex ? 1 : std::numeric_limits<Real>::max();  // distance to the sides in reference coordinates
   for (const Real one : xi) least = simplex ? std::min(least, one) : std::min(least, 1 - std::abs(one));
   if (simplex) {
     Real last = 1;
@@ -89,7 +89,7 @@ std::vector<Real> shape_functions_at(const Mesh& mesh, LocalIndex cell, const Ve
   return {N, N + n};
 }
 
-/// Points in the order of one coordinate: those that a box may hold are next to each other.
+/// Points sorted by one coordinate, so the candidates for a box are adjacent.
 class SortedPoints {
  public:
   explicit SortedPoints(const std::vector<Vector>& points) : points_(points) {
@@ -104,7 +104,7 @@ class SortedPoints {
               [&](std::size_t a, std::size_t b) { return points_[a][along_] < points_[b][along_]; });
   }
 
-  /// Calls use(point) for those in a box.
+  /// Calls use(point) for the points in a box.
   template <class Use>
   void for_each_in(const Vector& low, const Vector& high, const Use& use) const {
     auto next = std::lower_bound(order_.begin(), order_.end(), low[along_],
@@ -122,7 +122,7 @@ class SortedPoints {
   int along_ = 0;
 };
 
-/// The best candidate of each point so far, on this rank.
+/// Best candidate for a point so far, on this rank.
 struct Found {
   Real distance = std::numeric_limits<Real>::max();
   GlobalIndex number = std::numeric_limits<GlobalIndex>::max();
@@ -134,7 +134,8 @@ struct Found {
   }
 };
 
-/// Leaves each point to the rank with the nearest candidate, of these the one with the lowest number.
+/// Assigns each point to the rank with the nearest candidate; among equal distances the lowest number is selected.
+/// Collective.
 std::vector<Shares> best(const Mesh& mesh, std::vector<Found> here, const std::vector<Vector>& points,
                          const char* where) {
   std::vector<Real> distance;
@@ -182,14 +183,14 @@ std::vector<Shares> shares_in_cells(const Mesh& mesh, Entity entity, const std::
   return best(mesh, std::move(found), points, "outside of the mesh");
 }
 
-/// From x to the segment from a to b.
+/// Distance from x to the segment from a to b, m.
 Real distance_to(const Vector& a, const Vector& b, const Vector& x) {
   const Vector along = b - a;
   const Real s = std::clamp(dot(along, x - a) / dot(along, along), Real(0), Real(1));
   return norm(x - a - s * along);
 }
 
-/// From x to a fracture face with straight edges.
+/// Distance from x to a fracture face with straight edges, m.
 Real distance_to(const Mesh& mesh, const Mesh::FractureFace& face, const Vector& x) {
   const auto corners = mesh::face_corners(mesh, face.cell[mesh::minus], face.local_face[mesh::minus]);
   if (corners.n == 2) return distance_to(corners.x[0], corners.x[1], x);
@@ -214,7 +215,7 @@ std::vector<Shares> shares_on_faces(const Mesh& mesh, const std::vector<Vector>&
   return best(mesh, std::move(found), points, "on no fracture");
 }
 
-/// Sums up weights of equal entities.
+/// Merges shares of equal entities; their weights are summed.
 Shares merged(Shares shares) {
   std::sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) { return a.entity < b.entity; });
   Shares result;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr Real missing_value = std::numeric_limits<Real>::quiet_NaN();
 
-/// Names of components: of one number none.
+/// Suffixes of component names; empty for a single component.
 std::vector<std::string> component_names(int n, bool is_local) {
   if (n == 1) return {""};
   if (n == 6) return {" XX", " YY", " ZZ", " XY", " YZ", " XZ"};
@@ -37,7 +37,7 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// The points that a probe is of.
+/// Points of a probe: its place, or equally spaced points on its line.
 std::vector<Vector> points_of(const Probe& probe, int dim) {
   std::vector<Vector> points(probe.line.empty() ? 1 : probe.points, Vector{});
   for (std::size_t k = 0; k < points.size(); ++k)
@@ -48,7 +48,7 @@ std::vector<Vector> points_of(const Probe& probe, int dim) {
   return points;
 }
 
-/// Distance from the first, and coordinates.
+/// Adds the columns of the place: distance from the first point and coordinates.
 void tell_places(io::SeriesTable& table, const std::vector<Vector>& points, int dim) {
   table.place_columns = {{"distance", "m"}};
   for (int i = 0; i < dim; ++i) table.place_columns.push_back({std::string(1, "xyz"[i]), "m"});
@@ -58,7 +58,7 @@ void tell_places(io::SeriesTable& table, const std::vector<Vector>& points, int 
   }
 }
 
-/// What lies at a path of names.
+/// Returns the value at a path of names, or nullptr.
 const json* find(const json& sums, const std::vector<std::string>& names) {
   const json* at = &sums;
   for (const auto& name : names) {
@@ -75,10 +75,10 @@ const char* measure(Entity entity, int dim) {
 
 }  // namespace
 
-/// What there is to look at, before any step.
+/// Available values before the first step.
 struct Probes::Known {
-  std::vector<OutputField> outputs;     ///< of zeros
-  std::vector<FractureColumn> numbers;  ///< of fractures
+  std::vector<OutputField> outputs;     ///< with zero values
+  std::vector<FractureColumn> numbers;  ///< values of fractures
   struct Sum {
     int n_components;
     std::string unit;
@@ -213,14 +213,14 @@ void Probes::add_number(bool is_set, int fracture, const FractureColumn& column)
 void Probes::add_sum(const std::string& output, const std::string& place, int n, const std::string& unit) {
   for (const auto& component : component_names(n, false)) tables_.back().columns.push_back({output + component, unit});
   looks_.back().push_back([=](const Observation& seen) {
-    std::vector<Real> values(n, missing_value);  // of a place without a condition
+    std::vector<Real> values(n, missing_value);  // place without a condition
     if (const auto* sum = find(seen.sums, {output, place}))
       for (int i = 0; i < n; ++i) values[i] = sum->is_array() ? sum->at(i).get<Real>() : sum->get<Real>();
     return values;
   });
 }
 
-/// Their names are known with the first state.
+/// Adds the probe of a total. The names within the total are known only after the first state.
 void Probes::add_totals(const std::vector<std::string>& names) {
   const auto look = [this, names, t = tables_.size() - 1](const Observation& seen) {
     auto& columns = tables_[t].columns;
@@ -260,7 +260,7 @@ Probes::Look Probes::look(const Probe& probe, const OutputField& output) const {
       places = shares_at(mesh, output.entity, points);
     } catch (const Error&) {  // the same on all ranks
       if (mesh.origin.is_null()) throw;
-      const std::vector<Real> nothing(points.size() * output.n_components, missing_value);  // the place is excavated
+      const std::vector<Real> nothing(points.size() * output.n_components, missing_value);  // excavated place
       return [nothing](const Observation&) { return nothing; };
     }
   }

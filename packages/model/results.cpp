@@ -23,16 +23,16 @@ using nlohmann::json;
 
 namespace {
 
-constexpr const char* unsettled_name = "unsettled";  ///< of the VTU files
+constexpr const char* unsettled_name = "unsettled";  ///< name of the VTU files
 
-/// Removes what an earlier run left of faces that found no state; silent. Not collective.
+/// Removes the files of oscillating faces of a previous run; ignores failures. Not collective.
 void remove_unsettled(const std::string& directory) {
   std::error_code ignored;
   for (const char* end : {"", ".pvd", "_0000.pvtu"})
     std::filesystem::remove_all(directory + '/' + unsettled_name + end, ignored);
 }
 
-/// Removes what an earlier run left of tables, but for that of fractures where it is gone on from; silent. Not
+/// Removes the tables of a previous run, except those of fractures if the run is continued; ignores failures. Not
 /// collective.
 void remove_tables(const std::string& directory, bool goes_on) {
   std::error_code ignored;
@@ -41,10 +41,10 @@ void remove_tables(const std::string& directory, bool goes_on) {
   const std::filesystem::path probes = directory + "/probes";
   for (const auto& entry : std::filesystem::directory_iterator(probes, ignored))
     if (entry.path().extension() == ".csv") std::filesystem::remove(entry.path(), ignored);
-  std::filesystem::remove(probes, ignored);  // if nothing else is in it
+  std::filesystem::remove(probes, ignored);  // only if empty
 }
 
-/// The owned fracture faces with what is known of them.
+/// Owned fracture faces with the outputs on faces.
 io::Piece fractures_with(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
   auto piece = io::fracture_piece(mesh);
   std::vector<Real> number, single;
@@ -60,7 +60,7 @@ io::Piece fractures_with(const mesh::Mesh& mesh, const std::vector<OutputField>&
   return piece;
 }
 
-/// The same, a block for each fracture.
+/// One block of faces per fracture.
 std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractures) {
   std::vector<std::vector<LocalIndex>> faces(mesh.fracture_names.size());
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) faces[mesh.fracture_faces[f].fracture].push_back(f);
@@ -70,7 +70,7 @@ std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractu
   return blocks;
 }
 
-/// The numbers of a table in a journal, where null stands for none.
+/// Numbers of a table in a journal; null is a missing number.
 std::vector<Real> values_of(const json& table) {
   std::vector<Real> values;
   for (const auto& value : table)
@@ -78,12 +78,12 @@ std::vector<Real> values_of(const json& table) {
   return values;
 }
 
-/// Null without any.
+/// Returns the first row, or null without rows.
 json first_of(const std::vector<io::SeriesRow>& rows) {
   return rows.empty() ? json() : json{{"time", rows.front().time}, {"values", rows.front().values}};
 }
 
-/// The rows of a probe that an earlier run wrote, up to where it is gone on from; `begun`: what it told of the probe.
+/// Rows of a probe from a previous run, up to the restart. `begun` is its entry in Results::probes_begun().
 std::vector<io::SeriesRow> earlier_rows(const std::string& name, const json& begun, const std::vector<json>& journal) {
   std::vector<io::SeriesRow> rows;
   if (const auto& first = begun.at("first"); !first.is_null())
@@ -94,7 +94,7 @@ std::vector<io::SeriesRow> earlier_rows(const std::string& name, const json& beg
   return rows;
 }
 
-/// Faces of the three classes of a state.
+/// Numbers of open, sticking and slipping faces. Collective.
 std::array<long long, 3> counts_of_classes(const Comm& comm, const std::vector<OutputField>& outputs) {
   std::array<long long, 3> counts{};
   for (const auto& output : outputs)
@@ -115,7 +115,7 @@ void write_failure(const Comm& comm, const std::string& directory, const std::st
     io::make_directory(comm, directory);
     io::write_json(comm, path,
                    {{"status", "failed"}, {"reason", reason}, {"ranks", comm.getSize()}, {"steps", json::array()}});
-  } catch (const Error&) {  // the reason is told in any case
+  } catch (const Error&) {  // the reason is reported in any case
   }
 }
 
@@ -178,7 +178,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   write_json();
 }
 
-/// Rank 0 writes the steps and keeps them alone.
+/// Adds a step. Only rank 0 stores and writes the complete entry.
 void Results::add(const json& step) {
   json_["steps"].push_back(model_.mesh().comm->getRank() == 0 ? step : json{{"time", step.at("time")}});
 }
@@ -190,7 +190,8 @@ void Results::start_fractures(const std::vector<Real>& written) {
   if (base::on_any_rank(*mesh.comm, piece.n_cells() > 0)) fractures_->keep({"intersections", piece});
 }
 
-/// Tables go on where the run before had the same probe. Others begin with the present state, where it means something.
+/// Begins the tables of probes. A table of the previous run is continued if its probe is unchanged. Other tables begin
+/// with the present state, where values are defined.
 void Results::start_probes(const std::optional<EarlierResults>& earlier) {
   auto& system = model_.system();
   bool known = true;
@@ -204,7 +205,7 @@ void Results::start_probes(const std::optional<EarlierResults>& earlier) {
   json now = reactions();
   add_fractures(now, outputs);
   const auto values = probes_.values({outputs, sets_, singles_, now, units_});
-  sets_ = singles_ = {};  // of no step
+  sets_ = singles_ = {};  // no step yet
   auto tables = probes_.tables();
   const auto definitions = probes_.definitions();
   for (std::size_t t = 0; t < tables.size(); ++t) {
@@ -235,7 +236,7 @@ std::vector<json> Results::journal(int begin) const {
   return entries;
 }
 
-/// After every so many steps; of those that are chosen on the way to times of a schedule, after every so many of these.
+/// Returns true after every n-th step. With adaptive steps and a schedule, only the times of the schedule are counted.
 bool Results::fields_are_due(const StepTaken& step) const {
   const auto& time = model_.scene().time;
   int n = n_steps_;
@@ -269,7 +270,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   if (report.converged && !report.loose.empty()) step["loose"] = report.loose;
   if (!report.converged) step["unsettled_faces"] = add_unsettled(report);
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
-  if (!report.converged && report.substeps == 0) {  // nothing new to show
+  if (!report.converged && report.substeps == 0) {  // state unchanged
     add(step);
     return {0, 0, 0};
   }
@@ -300,7 +301,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   return counts_of_classes(*model_.mesh().comm, outputs);
 }
 
-/// The numbers of sets and, where there are any, of single fractures.
+/// Adds the values of sets and, if present, of single fractures.
 void Results::add_fractures(json& step, const std::vector<OutputField>& outputs) {
   const auto& mesh = model_.mesh();
   step["fractures"] = json::object();
@@ -319,7 +320,7 @@ void Results::add_probes(const json& step, const std::vector<OutputField>& outpu
   series_->add(step.at("time"), probes_.values({outputs, sets_, singles_, step, units_}));
 }
 
-/// Those of this state, the largest of all fractures.
+/// Sets the error bounds of this state: maximum over all fractures.
 void Results::add_error_bounds(const json& fractures, const std::vector<OutputField>& outputs) {
   for (const auto& output : outputs) {
     if (output.summary.kind != Summary::error_bound) continue;
@@ -330,7 +331,7 @@ void Results::add_error_bounds(const json& fractures, const std::vector<OutputFi
   }
 }
 
-/// The model has another scene, and may have another mesh.
+/// Adapts to the changed scene of the model, and perhaps to its changed mesh.
 void Results::begin_stage(const std::string& name, Real time) {
   const auto& mesh = model_.mesh();
   probes_.look_again();
@@ -342,9 +343,9 @@ void Results::begin_stage(const std::string& name, Real time) {
                              {"fracture_faces", mesh.n_global_fracture_faces}});
 }
 
-/// Those of conditions, by boundaries or regions, and what modules have to tell.
+/// Reactions of conditions, by boundary or region, and totals of the modules. Collective.
 json Results::reactions() {
-  json all = {{"reactions", json::object()}, {"reaction_moments", json::object()}};  // in any case
+  json all = {{"reactions", json::object()}, {"reaction_moments", json::object()}};  // present in any case
   const auto add = [](json& sum, Real value) { sum = value + (sum.is_null() ? 0 : sum.get<Real>()); };
   const auto add_all = [&](json& sums, const std::vector<Real>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) add(sums[i], values[i]);
@@ -375,11 +376,11 @@ json Results::reactions() {
   return all;
 }
 
-/// Counts the faces that found no state, and writes which they are beside the state that they left.
+/// Counts the oscillating faces and writes them to a file together with the state. Collective.
 long long Results::add_unsettled(const solve::StepReport& report) {
   const auto& mesh = model_.mesh();
   std::vector<Real> flags(report.unsettled.begin(), report.unsettled.end());
-  flags.resize(mesh.n_owned_fracture_faces);  // none where no iterate was accepted
+  flags.resize(mesh.n_owned_fracture_faces);  // empty if no iterate was accepted
   const long long here = std::count(flags.begin(), flags.end(), 1);
   const auto n = base::sum_over_ranks(*mesh.comm, here);
   if (n == 0 || !bulk_) return n;
@@ -464,8 +465,8 @@ void Results::finish(const std::string& status, const std::string& reason) {
   }
 }
 
-/// Where a disk is full there is still the room of the file that is there: without what describes mesh and solver, all
-/// steps fit into it, or those that it had.
+/// Finishes the results on a full disk by overwriting the existing file. Without the description of mesh and solver,
+/// there is space for all steps, or at least for those already written.
 void Results::finish_in_place(const std::string& reason) {
   json_["status"] = "failed";
   json_["reason"] = reason;

@@ -30,7 +30,7 @@ namespace sprekk::model {
 
 namespace {
 
-/// The table of time steps in the log: a line each.
+/// Table of time steps in the log, one line per step.
 class Progress {
  public:
   Progress(base::Log& log, const Steps& steps) : log_(log), steps_(steps), share_before_(steps.share_done()) {
@@ -59,7 +59,7 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Calls work(); the message of an Error opens with the scene's file, as those about its entries do.
+/// Calls work(). Messages of Errors get the scene file as prefix, like those about its entries.
 template <class Work>
 auto naming_file(const std::string& file, const Work& work) {
   try {
@@ -71,7 +71,8 @@ auto naming_file(const std::string& file, const Work& work) {
   }
 }
 
-/// Calls work(); an Error, of an expression or a full disk and the same on every rank, also ends the results.
+/// Calls work(). An Error, the same on every rank (an expression, a full disk), also finishes the results with its
+/// message.
 template <class Work>
 auto or_finished(Results& results, const Work& work) {
   try {
@@ -79,21 +80,21 @@ auto or_finished(Results& results, const Work& work) {
   } catch (const Error& error) {
     try {
       results.finish("failed", error.what());
-    } catch (const Error&) {  // the disk is full: the first message counts
+    } catch (const Error&) {  // full disk: the first message is used
     }
     throw;
   }
 }
 
-/// The scene, which whoever asks the run to stop can end within a step.
+/// Reads the scene and sets its stop function, which can end a run within a step.
 Scene scene_of(const RunOptions& options, const Comm& comm) {
   Scene scene = read_scene(comm, options.scene, options.overrides);
   scene.solver.should_stop = options.should_stop;
   return scene;
 }
 
-/// Reads the scene and makes its model. If that fails, results of an earlier run do not pass for those of this one;
-/// what a restart was to go on from stays. `reserve` makes the directory and sees to it that no other run writes there.
+/// Reads the scene and makes its model. After a failure, results of a previous run are replaced by the reason, except
+/// for a restart. `reserve` makes the directory and prevents other runs in it.
 std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& directory,
                                   const std::function<void()>& reserve, Adaptation& adaptation, RCP<const Comm> comm) {
   bool has_scene = false;
@@ -106,7 +107,7 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
         adaptation.prepare(scene, comm);
       }
       auto model = std::make_unique<Model>(scene, comm);
-      const Probes probes(*model);  // whose places must be there
+      const Probes probes(*model);  // checks that the places exist
       if (options.strict) base::throw_errors(model->warnings());
       return model;
     });
@@ -114,7 +115,7 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
     try {
       if (has_scene && !options.restart) reserve();
       if (!options.restart) write_failure(*comm, directory, error.what(), !has_scene);
-    } catch (const Error&) {  // the first message counts
+    } catch (const Error&) {  // the first message is used
     }
     throw;
   }
@@ -136,7 +137,7 @@ void describe(const Model& model, base::Log& log) {
   log.info("linear solver: {}", base::trimmed(model.newton().linear().solver().describe()));
 }
 
-/// A line for each part of the preconditioner: what it has cost on this rank.
+/// Logs the cost of each part of the preconditioner on this rank.
 void tell_costs(const Model& model, base::Log& log) {
   for (const auto& cost : model.newton().linear().solver().solver->costs()) {
     const auto multigrid = cost.operator_complexity > 0 ? fmt::format("; operator complexity {:.2f}, {:.0f} MB",
@@ -147,7 +148,7 @@ void tell_costs(const Model& model, base::Log& log) {
   }
 }
 
-/// Warns when what nothing holds has changed.
+/// Warns if the floating blocks have changed.
 void tell_loose(base::Log& log, Real t, const std::string& before, const std::string& now) {
   if (now == before) return;
   if (now.empty())
@@ -157,7 +158,7 @@ void tell_loose(base::Log& log, Real t, const std::string& before, const std::st
                 now);
 }
 
-/// Ends a run that was asked to stop, with the results of all whole steps.
+/// Ends an interrupted run, with the results of all complete steps.
 Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoints, base::Log& log) {
   checkpoints.at_the_end(results);
   results.finish("interrupted");
@@ -169,7 +170,7 @@ Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoint
   return Ending::interrupted;
 }
 
-/// Judges the accuracy of the last state, if the scene asks for any.
+/// Evaluates the accuracy of the last state, if the scene has the section Accuracy.
 void judge(const Model& model, Results& results, Adaptation& adaptation, base::Log& log) {
   if (!model.scene().accuracy) return;
   adaptation.judge(model, results.goals());
@@ -177,7 +178,7 @@ void judge(const Model& model, Results& results, Adaptation& adaptation, base::L
   for (const auto& verdict : adaptation.verdicts()) log.info("{}", verdict.line());
 }
 
-/// Takes the steps that are ahead of the model, until one fails or the run is to stop.
+/// Takes the remaining steps of the model until one fails or the run is stopped.
 Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& checkpoints, Adaptation& adaptation,
                   base::Log& log, const std::function<bool()>& should_stop) {
   const Scene& scene = model.scene();
@@ -219,7 +220,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
   return adaptation.reached() ? Ending::completed : Ending::inaccurate;
 }
 
-/// The text as part of a file's name, and whether it is one without loss.
+/// Converts a text to a part of a file name. The flag is true if the conversion loses no characters except blanks.
 std::pair<std::string, bool> file_name(const std::string& text) {
   std::string name;
   bool same = true;
@@ -254,7 +255,8 @@ std::string default_directory(const RunOptions& options) {
 
 namespace {
 
-/// The same on one mesh, which `adaptation` then makes finer if it is to be; `task` says what is being done.
+/// Runs the scene once on one mesh. Afterwards `adaptation` refines the mesh if another run follows. `task` is set to
+/// the present activity, for messages.
 Ending run_once(const RunOptions& options, const std::string& directory, const std::function<void()>& reserve,
                 Adaptation& adaptation, base::Log& log, RCP<const Comm> comm, std::string& task) {
   const auto model = make_model(options, directory, reserve, adaptation, comm);
@@ -267,7 +269,7 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
   Steps steps(*model);
   Checkpointing checkpoints(*model, steps, directory, log);
   if (!options.restart) checkpoints.start_anew();
-  const Scene as_read = model->scene();  // before it is brought to a stage
+  const Scene as_read = model->scene();  // without the changes of stages
   std::optional<EarlierResults> earlier;
   if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
   Results results(*model, as_read, directory, earlier);
@@ -281,12 +283,12 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
   return ending;
 }
 
-/// The same; the log has its file as soon as the directory is that of this run alone.
+/// Runs the scene, repeatedly with Accuracy. The log file is opened once the directory is reserved for this run.
 Ending run(const RunOptions& options, const std::string& directory, io::DirectoryLock& lock, base::Log& log,
            RCP<const Comm> comm, std::string& task) {
   const int n_ranks = comm->getSize();
   log.info("sprekk {}: {} on {} {}", version(), options.scene, n_ranks, n_ranks == 1 ? "rank" : "ranks");
-  const bool reserved = base::any_rank(*comm, [&] { return options.reserved; });  // ranks elsewhere may not be told
+  const bool reserved = base::any_rank(*comm, [&] { return options.reserved; });  // perhaps not set on other ranks
   const auto reserve = [&] {
     if (reserved)
       io::make_directory(*comm, directory);
@@ -315,7 +317,7 @@ Ending run(const RunOptions& options, RCP<const Comm> comm) {
   std::string task = options.scene + ": making the mesh and the equations";
   try {
     return run(options, directory, lock, log, comm, task);
-  } catch (const std::bad_alloc&) {  // perhaps here alone
+  } catch (const std::bad_alloc&) {  // perhaps on this rank only
     const auto message = fmt::format("{}: {}", task, base::out_of_memory());
     log.error(message);
     throw std::runtime_error(message);

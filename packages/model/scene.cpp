@@ -47,7 +47,7 @@ void Time::describe(base::Section& s) {
   if (schedule && schedule->empty()) s.fail("schedule", "is empty; give at least one time");
 }
 
-/// What goes with steps that are chosen, and what does not.
+/// Checks the entries for adaptive steps and reports incompatible ones.
 void Time::describe_choice(base::Section& s) const {
   if (chooses_steps() && steps)
     s.fail("steps", fmt::format("is {}: does not go with \"{}\", by which steps are chosen; leave out one of them",
@@ -146,7 +146,7 @@ void Scene::describe(base::Section& s) {
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
 }
 
-/// What does not go with meshes that a run halves.
+/// Reports entries incompatible with bisected meshes.
 void Scene::check_accuracy(base::Section& s) const {
   const std::string section = mesh_file ? "Mesh file" : "Mesh";
   const auto fail = [&](const std::string& entry, const std::string& what) {
@@ -170,7 +170,8 @@ base::Draft<Scene> from_list(const Teuchos::ParameterList& list, const std::stri
   return draft;
 }
 
-/// Adds to a material's list its entries of the other type, which effective() leaves out: so that they are refused.
+/// Adds the entries of the other material type, omitted by effective(), to a material list. They are then reported as
+/// errors.
 void add_stray_entries(Teuchos::ParameterList& list, const Material& material) {
   Material other = material, none;
   other.type = none.type = material.type == "joint" ? "elastic" : "joint";
@@ -185,7 +186,7 @@ void add_stray_entries(Teuchos::ParameterList& list, const Material& material) {
 }  // namespace
 
 base::Draft<Scene> prepared(const Scene& scene) {
-  Scene copy = scene;  // which describe() could change
+  Scene copy = scene;  // copy, because describe() could change it
   auto list = base::effective(copy, "Sprekk");
   for (const auto& [name, material] : scene.materials)
     add_stray_entries(list.sublist("Materials").sublist(name), material);

@@ -26,7 +26,7 @@ Names keys_of(const std::map<std::string, T>& map) {
   return names;
 }
 
-/// The boundaries that "periodic" ties.
+/// Boundaries tied by "periodic".
 Names tied_boundaries(const Scene& scene) {
   if (scene.mesh_file) return scene.mesh_file->periodic;
   const std::map<std::string, Names> sides = {
@@ -42,7 +42,7 @@ std::optional<Real> end_of_first_step(const Draft& draft) {
   return is_sound(draft, "Time") ? std::make_optional(draft.value.time.times().front()) : std::nullopt;
 }
 
-/// Rates of what is stored are of no use where nothing is.
+/// Reports a scheme for storage rates in a scene without storage, or one not supported by a physics.
 void compare_scheme(Comparison& comparison, const std::string& scheme) {
   bool rates = scheme == "implicit Euler" || !comparison.is_absent("Time");
   Names absent;
@@ -99,7 +99,7 @@ void compare_accuracy(Comparison& comparison, const Scene& scene) {
     });
     const auto why = refused.value_or(fmt::format("\"quantity\": is \"{}\", of which the scene has nothing; it has {}",
                                                   quantity.what, base::quoted_list(known)));
-    const auto entry = why.find("\": ");  // that it is about
+    const auto entry = why.find("\": ");  // the entry concerned
     if (is_there && !why.empty() && entry != std::string::npos)
       comparison.fail(place + " > " + why.substr(0, entry + 1), why.substr(entry + 3));
     else if (is_there && !why.empty())
@@ -139,7 +139,8 @@ MeshNames names_in_scene(const Draft& draft) {
 
 namespace {
 
-/// Compares a draft with a mesh, if there is one, or with what it says of its mesh; walls are boundaries.
+/// Compares a draft with its mesh if it exists, otherwise with the names from the scene; walls of excavations are
+/// boundaries.
 Comparison compared(const Draft& draft, MeshNames names) {
   if (names.boundaries)
     for (const auto& wall : draft.value.excavated())
@@ -173,7 +174,7 @@ mesh::GlobalMesh checked_mesh(const Draft& draft, std::string* unheld) {
   else if (scene.mesh_file && !scene.mesh_file->path.empty())
     attempt([&] { mesh::read_msh_file(scene.mesh_file->path); });
   auto comparison = compared(draft, mesh ? physics::names_of(*mesh) : names_in_scene(draft));
-  std::string no_value;  // of an expression; alone, it is told by a step that goes there
+  std::string no_value;  // of an expression; if it is the only mistake, the step at this time reports it
   try {
     if (mesh) comparison.compare(*mesh);
   } catch (const Error& error) {

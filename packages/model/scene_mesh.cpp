@@ -14,7 +14,7 @@ namespace sprekk::model {
 
 namespace {
 
-/// Does about crack tips what the entry says.
+/// Applies the entry "tips" to the mesh.
 template <class AnyMesh>
 void enrich(AnyMesh& mesh, const std::string& tips) {
   if (tips == "plain") return;
@@ -78,7 +78,7 @@ mesh::GlobalMesh Scene::read_mesh() const {
     auto& orientation = options.fractures[name];
     orientation.swap_sides = fracture.swap_sides;
     const auto n = fracture.reference_normal ? fracture.reference_normal->size() : 0;
-    if (n != 2 && n != 3) continue;  // of another length it is refused below
+    if (n != 2 && n != 3) continue;  // other lengths are refused below
     orientation.reference.emplace();
     std::copy_n(fracture.reference_normal->begin(), std::min<std::size_t>(3, fracture.reference_normal->size()),
                 orientation.reference->begin());

@@ -10,7 +10,7 @@ namespace sprekk::model {
 
 namespace {
 
-/// Sections that are what they are during all of a run.
+/// Sections that cannot change during a run.
 constexpr std::array constant_sections = {"Mesh", "Mesh file", "Time", "Output", "Probes", "Stages", "Accuracy"};
 
 std::vector<std::string> parts_of(const std::string& path) {
@@ -23,7 +23,7 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-/// Entries of `changes` go into `list` or take the place of others there.
+/// Adds the entries of `changes` to `list` or replaces existing ones.
 void merge(const Teuchos::ParameterList& changes, Teuchos::ParameterList& list) {
   for (const auto& named_entry : changes) {
     const auto& name = named_entry.first;
@@ -37,7 +37,7 @@ void merge(const Teuchos::ParameterList& changes, Teuchos::ParameterList& list) 
   }
 }
 
-/// Why the section or entry at a path cannot be removed; empty: it was.
+/// Removes the section or entry at a path. Returns the reason of a failure, or an empty text.
 std::string remove(const std::string& path, Teuchos::ParameterList& list) {
   const auto parts = parts_of(path);
   auto* at = &list;
@@ -88,7 +88,7 @@ std::vector<StagedScene> staged_scenes(const Scene& scene) {
   std::sort(stages.begin(), stages.end(), [](const auto& a, const auto& b) { return a.second.time < b.second.time; });
   std::vector<StagedScene> all;
   if (stages.empty()) return all;
-  Scene copy = scene;  // which describe() could change
+  Scene copy = scene;  // copy, because describe() could change it
   auto list = base::effective(copy, "Sprekk");
   for (const auto& [name, stage] : stages) {
     const auto origin = fmt::format("{}: stage \"{}\"", scene.origin, name);

@@ -15,14 +15,16 @@ bool contains(const std::vector<Real>& increasing, Real t) {
 
 solve::StepControlOptions options_of(const Time& time, Real end, bool rates) {
   const Real all = end - time.start;
-  const Real first = rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.03;  // of all
+  const Real first =
+      rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.03;  // relative to the whole time
   const Real largest = time.largest_step.value_or(all);
-  return {.tolerance = time.tolerance,
-          .iterations = time.newton_iterations,
-          .first = std::min(time.first_step.value_or(first * all), largest),
-          .smallest = std::min(time.smallest_step.value_or(1e-9 * all), largest),
-          .largest = largest,
-          .most_growth = time.scheme == "BDF2" ? 2.28 : 3};  // a step may be 1.05 times as long to meet a time
+  return {
+      .tolerance = time.tolerance,
+      .iterations = time.newton_iterations,
+      .first = std::min(time.first_step.value_or(first * all), largest),
+      .smallest = std::min(time.smallest_step.value_or(1e-9 * all), largest),
+      .largest = largest,
+      .most_growth = time.scheme == "BDF2" ? 2.28 : 3};  // a step may be extended by a factor of 1.05 to meet a time
 }
 
 }  // namespace
@@ -41,7 +43,7 @@ Steps::Steps(Model& model) : model_(model), times_(model.scene().time.times()), 
   for (const auto& [name, stage] : scene.stages)
     if (stage.release && stage.time + *stage.release < end) knots_.push_back(stage.time + *stage.release);
   std::sort(knots_.begin(), knots_.end());
-  for (Real& knot : knots_)  // of rounding alone none differs from a time
+  for (Real& knot : knots_)  // replaces a knot by a time if they differ only by rounding
     for (const Real t : times_)
       if (is_close(knot, t)) knot = t;
   auto stops = times_;
@@ -52,7 +54,7 @@ Steps::Steps(Model& model) : model_(model), times_(model.scene().time.times()), 
 
 namespace {
 
-/// What rounding leaves of a step is none.
+/// Returns true if `end` is later than t, apart from rounding.
 bool is_ahead(Real end, Real t, Real start) { return end - t > 1e-14 * std::max(std::abs(end), std::abs(start)); }
 
 }  // namespace
@@ -61,7 +63,7 @@ bool Steps::is_close(Real a, Real b) const {
   return std::abs(a - b) <= 1e-12 * (times_.back() - model_.scene().time.start);
 }
 
-/// To those that must be met, unless it is one of them but for rounding; then it becomes that.
+/// Adds t to the times that must be met. If it equals one of them apart from rounding, t is set to this time instead.
 void Steps::add_time(Real& t) {
   for (const Real other : times_)
     if (is_close(t, other)) {
@@ -71,12 +73,12 @@ void Steps::add_time(Real& t) {
   times_.insert(std::upper_bound(times_.begin(), times_.end(), t), t);
 }
 
-/// The first time ahead of the model.
+/// Finds the first time later than that of the model.
 void Steps::find_next() {
   while (next_ < times_.size() && !is_ahead(times_[next_], model_.time(), model_.scene().time.start)) ++next_;
 }
 
-/// Those before t; with `also_now` the one at t, too. Whether there was any.
+/// Begins the stages before t, with `also_now` also the stage at t. Returns true if a stage began.
 bool Steps::begin_stages(Real t, bool also_now) {
   const auto before = n_begun_;
   const Real start = model_.scene().time.start;
@@ -118,15 +120,15 @@ StepTaken Steps::take() {
   return step;
 }
 
-/// Of steps that are chosen: loads jump, or turn.
+/// Restarts the control of adaptive steps where loads or their slopes are discontinuous.
 void Steps::change_course() {
   if (!model_.system().has_rates()) return;
   control_->be_careful(model_.time());
   model_.system().forget_rates(true);
 }
 
-/// Loads are taken for straight within a step: where they are not it becomes shorter, unless that does not help. The
-/// end of the step, and how far its loads are from straight.
+/// Returns the end of the next step and the deviation of its loads from linear variation. The step is shortened if
+/// loads deviate too much and shortening helps.
 std::pair<Real, Real> Steps::next_attempt() {
   const auto scope = model_.timers().scope("choice of steps");
   const Real t = model_.time();
@@ -142,7 +144,7 @@ std::pair<Real, Real> Steps::next_attempt() {
 
 namespace {
 
-/// Of an accepted step of length dt with errors above the tolerance.
+/// Warning about an accepted step of length dt with errors above the tolerance.
 std::string limit_of_steps(Real dt, const StepTaken& step) {
   const auto worst = std::max_element(step.errors.begin(), step.errors.end(),
                                       [](const auto& a, const auto& b) { return a.value < b.value; });

@@ -1,4 +1,4 @@
-// What may be wrong with a scene that has no errors.
+// Warnings about implausible scenes.
 
 #include "model/knots.hpp"
 #include "model/model.hpp"
@@ -12,8 +12,8 @@ namespace sprekk::model {
 
 namespace {
 
-/// How many steps leave out more than a twentieth of what a table does between their ends, and the first of its knots
-/// there.
+/// Returns the number of steps that skip a relevant knot of a table, and the time of the first such knot. At a relevant
+/// knot, the table deviates from a linear variation over the step by more than 0.05 of its range.
 std::pair<int, Real> passed_over(const TableOfTime& of, const Time& time) {
   const auto& table = *of.table;
   const auto [least, most] = std::minmax_element(table.values.begin(), table.values.end());
@@ -35,7 +35,7 @@ std::pair<int, Real> passed_over(const TableOfTime& of, const Time& time) {
   return {n, first};
 }
 
-/// Steps that are chosen meet all knots.
+/// Warns about steps that skip knots of tables. Adaptive steps meet all knots.
 std::vector<std::string> steps_across_knots(const Scene& scene) {
   std::vector<std::string> all;
   if (scene.time.chooses_steps()) return all;
@@ -69,7 +69,7 @@ std::vector<std::string> stages_after_the_end(const Scene& scene) {
   return all;
 }
 
-/// At which loads are looked at: the ends of steps; where these are chosen, some times between, and knots.
+/// Times for the inspection of loads: ends of steps; for adaptive steps, also intermediate times and knots.
 std::vector<Real> looked_at(const Scene& scene) {
   auto times = scene.time.times();
   if (!scene.time.chooses_steps()) return times;
