@@ -15,20 +15,20 @@ namespace sprekk::mesh {
 
 namespace {
 
-/// The corner that a face of a simplex is opposite to.
+/// opposite() returns the corner opposite to a face of a simplex, face_opposite() the face opposite to a corner.
 int opposite(int dim, int local_face) { return dim == 2 ? (local_face + 2) % 3 : local_face; }
 int face_opposite(int dim, int corner) { return dim == 2 ? (corner + 1) % 3 : corner; }
 
 }  // namespace
 
-/// Numbers of the nodes amid edges.
+/// Nodes at the midpoints of edges.
 class Bisection::Middles {
  public:
   Middles(std::vector<Real>& coordinates, int dim) : coordinates_(coordinates), dim_(dim) {}
 
   bool has(GlobalIndex a, GlobalIndex b) const { return known_.count(key(a, b)) > 0; }
 
-  /// Adds the node if there is none.
+  /// Returns the midpoint node; adds it if necessary.
   GlobalIndex at(GlobalIndex a, GlobalIndex b) {
     const auto n = static_cast<GlobalIndex>(coordinates_.size()) / dim_;
     const auto [found, is_new] = known_.emplace(key(a, b), n);
@@ -45,8 +45,8 @@ class Bisection::Middles {
   static SortedCorners key(GlobalIndex a, GlobalIndex b) { return {std::min(a, b), std::max(a, b), -1, -1}; }
 };
 
-/// Which of some edges of a cell is the longest. Of equal ones, but for rounding, that with the higher middle counts:
-/// so the choice depends on places, not on numbers.
+/// Selects the longest of some edges of a cell. Among edges of equal length (up to rounding), the coordinates of the
+/// midpoint decide. The selection thus depends on positions, not on numbers.
 class Bisection::Longest {
  public:
   Longest(const std::vector<Real>& coordinates, int dim) : coordinates_(coordinates), dim_(dim) {
@@ -89,7 +89,7 @@ Bisection::Bisection(const GlobalMesh& mesh) : dim_(mesh.dim()) {
   empty_.fracture_names = mesh.fracture_names;
   empty_.single_fractures = mesh.single_fractures;
   const int n = n_corners(mesh.shape);
-  std::vector<GlobalIndex> number(mesh.n_nodes(), -1);  // of points, in the order of their nodes
+  std::vector<GlobalIndex> number(mesh.n_nodes(), -1);  // numbers of points, in the order of their nodes
   for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node) {
     if (mesh.point_of(node) != node) continue;
     number[node] = static_cast<GlobalIndex>(coordinates_.size()) / dim_;
@@ -134,25 +134,25 @@ void Bisection::mark_edges() {
   }
 }
 
-/// The one that keeps this end of the refinement edge; the middle takes the place of the other end.
+/// Child that contains the end `keeps` of the refinement edge; the midpoint replaces the other end.
 Bisection::Cell Bisection::child(const Cell& parent, int keeps, GlobalIndex middle) const {
   const signed char a = parent.edge[keeps], n = parent.edge[1 - keeps];
   Cell child = parent;
   child.node[n] = middle;
-  child.label[a] = -1;  // the new face between the children
+  child.label[a] = -1;  // new face between the children
   if (dim_ == 2) {
     child.edge = {a, static_cast<signed char>(3 - a - n)};
     return child;
   }
   const auto is_end = [&](signed char k) { return k == a || k == n; };
-  signed char third = -1;  // the corner beside the refinement edge that marked edges have, the same if in one plane
+  signed char third = -1;  // corner of a marked edge that is not on the refinement edge; unique if coplanar
   bool planar = true;
   for (const auto& edge : parent.marked)
     for (const signed char k : edge)
       if (!is_end(k)) planar = planar && (third < 0 || third == k), third = k;
   child.edge = parent.marked[1 - keeps];
   child.flag = planar && !parent.flag;
-  for (int end : {0, 1}) {  // the face opposite to it has the other end, the last corner and the new node
+  for (int end : {0, 1}) {  // the opposite face contains the other end, the last corner and the new node
     const signed char other = child.edge[1 - end];
     const auto last = static_cast<signed char>(6 - n - child.edge[0] - child.edge[1]);
     const bool is_new = child.edge[end] == a;
@@ -205,7 +205,7 @@ GlobalMesh Bisection::mesh(int order) const {
   return split_along_faces(std::move(mesh));
 }
 
-/// Those of fractures in the order of the cells on side minus.
+/// Adds the boundary and fracture faces. Fracture faces are in the order of their minus cells.
 void Bisection::add_faces(GlobalMesh& mesh) const {
   using Face = std::pair<GlobalIndex, int>;
   std::unordered_map<SortedCorners, Face, SortedCornersHash> on_plus;

@@ -18,14 +18,14 @@
 namespace sprekk::mesh {
 namespace {
 
-constexpr Real most_blocks = 1e9;  // beyond it, one rank's memory cannot hold them
+constexpr Real most_blocks = 1e9;  // limit of the memory of one rank
 
-using Lattice = std::array<int, 3>;  ///< a point of the structured mesh; the last component is 0 in 2D
-using Corners = std::vector<int>;    ///< corners of a square or cube, bit i set: upper in direction i
+using Lattice = std::array<int, 3>;  ///< point of the structured mesh; the last component is 0 in 2D
+using Corners = std::vector<int>;    ///< corners of a square or cube; bit i set: upper end in direction i
 
 constexpr std::array<const char*, 6> boundary_names{"west", "east", "south", "north", "bottom", "top"};
 constexpr std::array<const char*, 4> cell_names{"triangle", "quadrilateral", "tetrahedron",
-                                                "hexahedron"};  // as in Shape
+                                                "hexahedron"};  // in the order of Shape
 
 Shape shape_of(const std::string& cell) {
   const auto found = std::find(cell_names.begin(), cell_names.end(), cell);
@@ -34,7 +34,7 @@ Shape shape_of(const std::string& cell) {
   return static_cast<Shape>(found - cell_names.begin());
 }
 
-/// The cells that fill one square or cube; `odd` selects the other diagonal of a square.
+/// Cells that fill one square or cube; `odd` selects the other diagonal of a square.
 std::vector<Corners> cells_of_block(Shape shape, bool odd) {
   switch (shape) {
     case Shape::quadrilateral:
@@ -48,7 +48,7 @@ std::vector<Corners> cells_of_block(Shape shape, bool odd) {
   }
 }
 
-/// Where a fracture lies.
+/// Position of a fracture on the lattice.
 struct Rectangle {
   Lattice lower, upper;
   int normal;
@@ -65,7 +65,7 @@ class BoxBuilder {
     mesh_.boundary_names.assign(boundary_names.begin(), boundary_names.begin() + 2 * dim_);
   }
 
-  /// What is wrong with each of the fractures.
+  /// Mistakes in the fractures, one text each.
   std::vector<std::string> defects() const {
     std::vector<std::string> errors;
     for (const auto& [name, fracture] : box_.fractures) try {
@@ -145,7 +145,7 @@ class BoxBuilder {
     return {static_cast<int>(node % nx), static_cast<int>(node / nx % ny), static_cast<int>(node / (nx * ny))};
   }
 
-  /// The unit vector about which the box turns.
+  /// Unit vector of the rotation axis.
   Vector rotation_axis() const {
     if (dim_ == 2) return {0, 0, 1};
     check_length("rotation axis", box_.rotation_axis.size());
@@ -154,7 +154,7 @@ class BoxBuilder {
     return (1 / norm(axis)) * axis;
   }
 
-  /// The rotated vector, by Rodrigues' formula.
+  /// Rotated vector, by Rodrigues' formula.
   Vector rotated(const Vector& v) const {
     if (box_.rotation == 0) return v;
     const Real angle = box_.rotation * M_PI / 180, c = std::cos(angle), s = std::sin(angle);
@@ -178,7 +178,7 @@ class BoxBuilder {
         mesh_.cells.push_back(node({block[0] + (corner & 1), block[1] + (corner >> 1 & 1), block[2] + (corner >> 2)}));
   }
 
-  /// While the box is not yet turned.
+  /// Assigns cells to a region; requires coordinates before the rotation.
   void add_region(const std::string& name, const BoxMesh::Region& region) {
     check_length(fmt::format("region \"{}\": lower corner", name), region.lower_corner.size());
     check_length(fmt::format("region \"{}\": upper corner", name), region.upper_corner.size());
@@ -199,7 +199,7 @@ class BoxBuilder {
     SPREKK_CHECK(any, "region \"{}\": has no cell between its lower and its upper corner", name);
   }
 
-  /// Whether all nodes of a cell's face lie in a lattice box.
+  /// Returns true if all nodes of a face of a cell lie in a lattice box.
   bool is_inside(GlobalIndex cell, int local_face, const Lattice& lower, const Lattice& upper) const {
     for (GlobalIndex node : nodes_of_face(mesh_, cell, local_face)) {
       if (node < 0) continue;
@@ -210,8 +210,8 @@ class BoxBuilder {
     return true;
   }
 
-  /// Calls use(cell, local face) for the faces on a lattice rectangle, seen from the blocks below it, or from those
-  /// above it where it is the lower end of the box.
+  /// Calls use(cell, local face) for the faces on a lattice rectangle. The cells are below it; at the lower end of the
+  /// box they are above it.
   template <class Use>
   void for_faces(const Lattice& lower, const Lattice& upper, int normal, const Use& use) const {
     const GlobalIndex cells_per_block = static_cast<GlobalIndex>(cells_of_block(shape_, false).size());
@@ -241,7 +241,7 @@ class BoxBuilder {
       }
   }
 
-  /// The mesh plane of a fracture's coordinate.
+  /// Index of the mesh plane at a coordinate of a fracture. Throws an Error if the coordinate is not on a mesh plane.
   int plane_index(const std::string& fracture, int i, Real x) const {
     const Real position = (x - box_.lower_corner[i]) / block_size(i), index = std::round(position);
     const int below = std::clamp(static_cast<int>(std::floor(position)), 0, n_blocks_[i] - 1);
@@ -288,7 +288,7 @@ class BoxBuilder {
   }
 };
 
-/// What is wrong with a box, as far as it can be told without making the mesh.
+/// Mistakes in a box that are detectable without a mesh.
 std::vector<std::string> defects(const BoxMesh& box) {
   try {
     return BoxBuilder(box).defects();

@@ -5,7 +5,7 @@
 namespace sprekk::mesh {
 namespace {
 
-/// The other ends of the edges from each corner, in right-handed order.
+/// Other ends of the edges from a corner, in right-handed order.
 std::array<int, 3> adjacent_corners(Shape shape, int corner) {
   constexpr int tetrahedron[][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};
   constexpr int hexahedron[][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
@@ -26,7 +26,7 @@ unsigned bits(const int* corners, int n) {
 
 std::vector<unsigned> corners_of_nodes(Shape shape) {
   const int n_around = n_face_corners(shape), n = n_nodes(shape);
-  std::vector<unsigned> result(n, (1u << n_corners(shape)) - 1);  // what no face names lies inside
+  std::vector<unsigned> result(n, (1u << n_corners(shape)) - 1);  // nodes on no face are inside
   for (int k = 0; k < n_corners(shape); ++k) result[k] = 1u << k;
   if (order(shape) == 1) return result;
   const CellGeometry geometry(shape);
@@ -74,7 +74,8 @@ std::array<Real, 2> CellGeometry::scaled_jacobian(const GlobalMesh& mesh, Global
       return e.from == std::min(from, to) && e.to == std::max(from, to);
     });
     const Vector chord = x(to) - x(from), start = 4.0 * x(edge->middle) - 3.0 * x(from) - x(to);
-    return norm(start) > 1e-6 * norm(chord) ? start : chord;  // a quarter point next to `from` leaves no slope there
+    return norm(start) > 1e-6 * norm(chord) ? start
+                                            : chord;  // with a quarter-point node near `from`, the tangent vanishes
   };
   const auto unit = [](const Vector& v) { return norm(v) > 0 ? (1 / norm(v)) * v : Vector{}; };
   const Real regular = !is_simplex(shape_) ? 1 : dim == 2 ? 2 / std::sqrt(3.0) : std::sqrt(2.0);

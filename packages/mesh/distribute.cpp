@@ -15,10 +15,10 @@
 namespace sprekk::mesh {
 namespace {
 
-/// Entities of one kind on this rank: owned ones first.
+/// Entities of one kind on this rank, owned ones first.
 struct Numbering {
   std::vector<GlobalIndex> ids;      ///< [local]
-  std::vector<LocalIndex> local_of;  ///< [global], -1 where not on this rank
+  std::vector<LocalIndex> local_of;  ///< [global] local number; -1 if not on this rank
   LocalIndex n_owned = 0;
 
   void append(GlobalIndex id) {
@@ -27,7 +27,7 @@ struct Numbering {
   }
 };
 
-/// Numbers the entities for which is_local, those that this rank owns first.
+/// Numbers the owned entities first, then the other local ones.
 Numbering number(const std::vector<bool>& is_local, const std::vector<int>& owner, int rank) {
   const auto n = static_cast<GlobalIndex>(owner.size());
   Numbering result;
@@ -43,7 +43,7 @@ Numbering number(const std::vector<bool>& is_local, const std::vector<int>& owne
 /// Builds the part of any rank, without its communicator.
 class Distributor {
  public:
-  /// Keeps references to the arguments.
+  /// Stores references to the arguments. Throws an Error if a part is not a rank or a node belongs to no cell.
   Distributor(const GlobalMesh& global, const std::vector<int>& part, int n_ranks)
       : global_(global),
         part_(part),
@@ -88,7 +88,7 @@ class Distributor {
   int rank_ = 0;
   std::vector<int> node_owner_;
   PartitionReport report_;
-  std::vector<GlobalIndex> enriched_;  // [node] number among the enriched ones, -1; empty without tips
+  std::vector<GlobalIndex> enriched_;  // [node] number among the enriched nodes, or -1; empty without tips
   GlobalIndex n_enriched_ = 0;
   Numbering cells_, nodes_;
   Mesh mesh_;
@@ -103,7 +103,7 @@ class Distributor {
 
   GlobalIndex node(GlobalIndex cell, int k) const { return global_.cells[cell * nodes_per_cell_ + k]; }
 
-  /// The nodes of the cells that `selected` picks, and those that they are tied to.
+  /// Nodes of the selected cells, and the nodes to which these are tied.
   template <class Predicate>
   std::vector<bool> nodes_of(const Predicate& selected) const {
     std::vector<bool> result(global_.n_nodes(), false);
@@ -114,8 +114,8 @@ class Distributor {
     return result;
   }
 
-  /// Cells that share a node with an owned cell (hence the owned ones too), those opposite to owned fracture faces, and
-  /// those on side minus of faces that end where an owned one does.
+  /// Local cells: cells that share a node with an owned cell (including owned cells), cells opposite to owned fracture
+  /// faces, and minus cells of faces that share a ridge with an owned face.
   std::vector<bool> local_cells() const {
     const auto is_near = nodes_of([&](GlobalIndex cell) { return part_[cell] == rank_; });
     std::vector<bool> result(global_.n_cells(), false);
@@ -131,7 +131,7 @@ class Distributor {
     return result;
   }
 
-  /// The fracture faces that end in the same ridge, of each ridge with several.
+  /// Fracture faces at each ridge with several faces.
   static std::vector<std::vector<GlobalIndex>> find_ridges(const GlobalMesh& mesh) {
     std::vector<std::pair<std::array<GlobalIndex, 2>, GlobalIndex>> ends;
     for (std::size_t id = 0; id < mesh.fracture_faces.size(); ++id)
@@ -148,7 +148,7 @@ class Distributor {
     return result;
   }
 
-  /// The points at the corners of a fracture face, in the order of the minus cell's face.
+  /// Points at the corners of a fracture face, in the order of the minus cell's face.
   static std::array<GlobalIndex, 4> corners_of(const GlobalMesh& mesh, GlobalIndex id) {
     const auto& face = mesh.fracture_faces[id];
     const auto nodes = nodes_of_face(mesh, face.cell[minus], face.local_face[minus]);
@@ -157,7 +157,7 @@ class Distributor {
     return corners;
   }
 
-  /// For each node the lowest rank that owns a cell around it or around a node tied to it; -1 for a tied one.
+  /// Returns for each node the lowest rank that owns a cell at the node or at a tied node; -1 for tied nodes.
   std::vector<int> node_owners(int n_ranks) const {
     std::vector<int> owner(global_.n_nodes(), n_ranks);
     for (GlobalIndex cell = 0; cell < global_.n_cells(); ++cell)
@@ -174,7 +174,7 @@ class Distributor {
   void fill_nodes() {
     const int dim = global_.dim();
     mesh_.n_owned_nodes = nodes_.n_owned;
-    for (GlobalIndex id : nodes_.ids) {  // tied nodes have the highest numbers, and no owner: they come last
+    for (GlobalIndex id : nodes_.ids) {  // tied nodes are last: they have the highest numbers and no owner
       if (id < global_.n_free_nodes())
         ++mesh_.n_free_nodes;
       else
@@ -187,7 +187,7 @@ class Distributor {
                                &global_.coordinates[id * dim] + dim);
   }
 
-  /// Numbers the nodes that are no tips but in a cell with one.
+  /// Numbers the nodes that are not tips but belong to a cell with a tip.
   void number_enriched() {
     if (global_.tip.empty() || order(global_.shape) == 2) return;
     enriched_.assign(global_.n_nodes(), -1);
@@ -208,7 +208,7 @@ class Distributor {
     mesh_.n_global_enriched = n_enriched_;
     for (std::size_t i = 0; i < nodes_.ids.size(); ++i) {
       const GlobalIndex id = nodes_.ids[i];
-      const bool is_new = enriched_[id] >= 0;  // of tied nodes only the free one is numbered, and comes before
+      const bool is_new = enriched_[id] >= 0;  // only the free node of tied nodes is numbered; it comes first
       mesh_.enriched.push_back(is_new                         ? static_cast<LocalIndex>(mesh_.enriched_id.size())
                                : id >= global_.n_free_nodes() ? mesh_.enriched[nodes_.local_of[global_.free_node(id)]]
                                                               : -1);
@@ -265,7 +265,8 @@ class Distributor {
     return face;
   }
 
-  /// Global nodes of both sides of a fracture face, in the order of the minus cell's face.
+  /// Global nodes of both sides of a fracture face, in the order of the minus cell's face. Throws an Error if the sides
+  /// are more than 1e-8 of their size apart.
   std::array<std::array<GlobalIndex, max_face_nodes>, 2> coinciding_nodes(GlobalIndex id) const {
     const auto& face = global_.fracture_faces[id];
     const int n = n_face_nodes(global_.shape);
@@ -292,8 +293,8 @@ class Distributor {
   }
 };
 
-/// Calls put(x) for each member of a mesh but its communicator, its facets and its origin, which come later; a new
-/// member that is not listed here does not compile.
+/// Calls put(x) for each member of a mesh except communicator, facets and origin, which are set later. A new member
+/// missing here causes a compile error.
 template <class Members, class Put>
 void for_members(Members& mesh, const Put& put) {
   auto& [comm, shape, n_owned_nodes, n_owned_cells, n_owned_fracture_faces, n_free_nodes, tied_to, node_id, cell_id,
@@ -343,7 +344,7 @@ class Packer {
   }
 };
 
-/// Reads in the order in which a Packer wrote.
+/// Reads data in the order written by a Packer.
 class Unpacker {
  public:
   explicit Unpacker(const std::vector<char>& bytes) : next_(bytes.data()) {}
@@ -390,7 +391,7 @@ class Unpacker {
   }
 };
 
-/// Brings bytes from rank 0 to another rank; both call it. MPI counts in int, hence the pieces.
+/// Sends bytes from rank 0 to another rank; both ranks call it. The data are divided, because MPI counts are int.
 void transfer(const Comm& comm, int to, std::vector<char>& bytes) {
   constexpr long long piece = 1 << 30;
   const bool sends = comm.getRank() == 0;
@@ -407,7 +408,8 @@ void transfer(const Comm& comm, int to, std::vector<char>& bytes) {
     move(static_cast<int>(std::min(piece, size - start)), bytes.data() + start);
 }
 
-/// Every rank's part of the mesh that prepare() gives on rank 0, the last rank's first. Collective.
+/// Returns every rank's part of the mesh that prepare() makes on rank 0. The part of the last rank is sent first.
+/// Collective.
 RCP<const Mesh> scatter(const std::function<const GlobalMesh&()>& prepare, RCP<const Comm> comm) {
   const bool is_root = comm->getRank() == 0;
   std::vector<int> part;

@@ -41,8 +41,7 @@ void GhostExchange::to_largest(std::vector<GlobalIndex>& values) const {
 std::vector<GlobalIndex> sums_before(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& counts,
                                      const RCP<const Comm>& comm) {
   const auto here = map_of(ids.data(), static_cast<LocalIndex>(ids.size()), comm);
-  const auto n =
-      static_cast<Tpetra::global_size_t>(here->getMaxAllGlobalIndex() + 1);  // none: 0, for there is no index
+  const auto n = static_cast<Tpetra::global_size_t>(here->getMaxAllGlobalIndex() + 1);  // 0 without indices
   const auto in_order = rcp(new IndexMap(here->getGlobalNumElements() == 0 ? 0 : n, 0, comm));
   const Tpetra::Export<LocalIndex, GlobalIndex> there(here, in_order);
   IndexVector mine(here), sorted(in_order);

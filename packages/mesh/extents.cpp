@@ -10,7 +10,7 @@
 namespace sprekk::mesh {
 namespace {
 
-/// Bounding boxes around the nodes of all ranks.
+/// Bounding boxes of nodes over all ranks.
 class Boxes {
  public:
   explicit Boxes(std::size_t n) : corners_(6 * n, -std::numeric_limits<Real>::max()) {}

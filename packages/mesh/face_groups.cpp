@@ -25,14 +25,14 @@ Names without(const Names& a, const Names& b) {
   return result;
 }
 
-/// All of them: a list to be copied.
+/// Complete list of names, for copying.
 std::string listed(const Names& names) {
   std::string text;
   for (const auto& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
   return text;
 }
 
-/// The faces of each group.
+/// Faces of each group.
 std::map<std::string, std::vector<GlobalIndex>> faces_of_groups(const InnerFaces& faces) {
   std::map<std::string, std::vector<GlobalIndex>> result;
   for (const auto& [number, face] : faces)
@@ -40,8 +40,8 @@ std::map<std::string, std::vector<GlobalIndex>> faces_of_groups(const InnerFaces
   return result;
 }
 
-/// `fractures` and further groups, the small ones first or last, that share no face with one another. Without a value
-/// if a face is then in none.
+/// Returns `fractures` and further groups without common faces; small groups are added first or last. Returns no value
+/// if a face remains without a fracture.
 std::optional<Names> completed(const InnerFaces& faces, Names fractures, bool small_first) {
   const auto of_group = faces_of_groups(faces);
   std::set<GlobalIndex> covered;
@@ -61,7 +61,7 @@ std::optional<Names> completed(const InnerFaces& faces, Names fractures, bool sm
   return covered.size() == faces.size() ? std::optional(fractures) : std::nullopt;
 }
 
-/// The choice in words that has each face once: with the present fractures if they may stay.
+/// Advice for a choice with each face exactly once. It retains the present fractures if possible and `may_stay`.
 std::string advice(const InnerFaces& faces, const Names& fractures, bool may_stay) {
   std::optional<Names> choice;
   for (const auto& start : {may_stay ? fractures : Names{}, Names{}})

@@ -15,7 +15,7 @@ FaceCorners corners_of(const GlobalMesh& mesh, GlobalIndex cell, int local_face)
   return result;
 }
 
-/// Of a fracture face, counted around it.
+/// Corner k of a fracture face, cyclic.
 Vector face_corner(const Mesh& mesh, LocalIndex face, int k) {
   const auto& fracture = mesh.fracture_faces[face];
   const int side = fracture.cell[minus] >= 0 ? minus : plus;
@@ -107,7 +107,7 @@ std::vector<GlobalIndex> face_neighbours(const GlobalMesh& mesh) {
   const auto corners_of = [&](GlobalIndex face) {
     return sorted_corners(mesh, face / faces_per_cell, static_cast<int>(face % faces_per_cell));
   };
-  // Faces hashed by their corners: a chain for each value, first[hash] -> next[face] -> ... -> -1.
+  // Hash table of faces by their corners, with one chain per value: first[hash] -> next[face] -> ... -> -1.
   std::size_t n_hashes = 1;
   while (4 * n_hashes < static_cast<std::size_t>(n)) n_hashes *= 2;
   std::vector<GlobalIndex> first(n_hashes, -1), next(n, -1), neighbour(next);

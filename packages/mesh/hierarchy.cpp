@@ -13,8 +13,8 @@
 namespace sprekk::mesh {
 namespace {
 
-/// Facet i and lower-dimensional cell cells[i] share measures[i]. The map from cells to facets or back, whose rows
-/// (average) or columns (integrate) are scaled to the sum one.
+/// Returns the map from cells to facets or back; facet i and lower-dimensional cell cells[i] share measures[i]. Rows
+/// (average) or columns (integrate) are scaled to the sum 1.
 Map scaled_map(const std::vector<GlobalIndex>& cells, const std::vector<Real>& measures, GlobalIndex n_cells,
                bool to_cells, bool rows) {
   const auto n_facets = static_cast<GlobalIndex>(cells.size());
@@ -54,9 +54,9 @@ class HierarchyBuilder {
   const int dim_, n_fractures_;
   Hierarchy result_;
   std::map<std::string, int> n_named_;
-  std::vector<GlobalIndex> position_;                        ///< [fracture face] in the cells of its fracture
+  std::vector<GlobalIndex> position_;                        ///< [fracture face] index in the cells of its fracture
   std::map<std::array<GlobalIndex, 2>, GlobalIndex> known_;  ///< number of the ridge with these nodes, sorted
-  std::vector<int> line_of_;                                 ///< [ridge] its intersection's subdomain, -1 if none
+  std::vector<int> line_of_;                                 ///< [ridge] subdomain of its intersection, or -1
   std::vector<std::vector<GlobalIndex>> lower_cells_;        ///< [interface][facet] coinciding cell
 
   int n_subdomains() const { return static_cast<int>(result_.subdomains.size()); }
@@ -113,7 +113,7 @@ class HierarchyBuilder {
     interface.to_higher = {map(false, true), map(false, false)};
   }
 
-  /// Parent nodes of the ridge that starts at a corner of a cell's face.
+  /// Parent nodes of the ridge that starts at a corner of a face of a cell.
   std::array<GlobalIndex, 2> ridge_nodes(GlobalIndex cell, int local_face, int corner) const {
     const auto nodes = nodes_of_face(mesh_, cell, local_face);
     if (dim_ == 2) return {mesh_.parent_node[nodes[corner]], -1};
@@ -170,13 +170,13 @@ class HierarchyBuilder {
   }
 
   void add_intersections() {
-    std::map<std::set<int>, std::vector<GlobalIndex>> ridges_of;  // for each set of fractures that meet
+    std::map<std::set<int>, std::vector<GlobalIndex>> ridges_of;  // by sets of fractures
     for (std::size_t r = 0; r < result_.ridges.size(); ++r)
       if (const auto fractures = fractures_at(r); fractures.size() > 1)
         ridges_of[fractures].push_back(static_cast<GlobalIndex>(r));
     line_of_.assign(result_.ridges.size(), -1);
     for (const auto& [fractures, ridges] : ridges_of) {
-      std::map<GlobalIndex, std::vector<GlobalIndex>> around;  // the ridges at each of their nodes
+      std::map<GlobalIndex, std::vector<GlobalIndex>> around;  // ridges at each node
       for (GlobalIndex r : ridges)
         for (GlobalIndex node : result_.ridges[r].nodes)
           if (node >= 0) around[node].push_back(r);
@@ -216,9 +216,9 @@ class HierarchyBuilder {
     };
     struct Node {
       GlobalIndex id;
-      std::vector<End> ends;  ///< of edges of lines
+      std::vector<End> ends;  ///< edge ends of lines
     };
-    std::vector<Node> nodes;  // in the order in which the ridges meet them
+    std::vector<Node> nodes;  // in the order of the ridges
     std::map<GlobalIndex, std::size_t> known;
     std::vector<GlobalIndex> n_in_line(n_subdomains(), 0);
     for (std::size_t r = 0; r < result_.ridges.size(); ++r) {
@@ -230,7 +230,7 @@ class HierarchyBuilder {
         nodes[found->second].ends.push_back({line_of_[r], local, cell});
       }
     }
-    std::map<std::set<int>, std::vector<const Node*>> points_of;  // for each set of fractures that meet
+    std::map<std::set<int>, std::vector<const Node*>> points_of;  // by sets of fractures
     for (const auto& node : nodes) {
       std::set<int> lines, fractures;
       for (const auto& end : node.ends) {

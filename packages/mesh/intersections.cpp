@@ -10,14 +10,14 @@
 namespace sprekk::mesh {
 namespace {
 
-using Nodes = std::vector<GlobalIndex>;  ///< of a ridge by their sets of copies: its ends, ascending, and the middle
+using Nodes = std::vector<GlobalIndex>;  ///< set numbers of the nodes of a ridge: ends, ascending, then the middle
 
 bool do_meet(std::vector<int>& fractures) {
   std::sort(fractures.begin(), fractures.end());
   return fractures.size() > 2 || fractures.front() != fractures.back();
 }
 
-/// The ridges around the fracture faces of one rank.
+/// Ridges of the fracture faces on one rank.
 class LocalRidges {
  public:
   explicit LocalRidges(const Mesh& mesh) : mesh_(mesh), alike_(mesh), in_owned_cell_(mesh.n_nodes(), false) {
@@ -25,10 +25,10 @@ class LocalRidges {
     for (const auto& face : mesh.fracture_faces) add(face);
   }
 
-  /// Numbers that tell a ridge of an owned face: its nodes, their places, and the fracture.
+  /// Number of values per ridge of an owned face: its nodes, their coordinates, and the fracture.
   int n_numbers() const { return 4 * n_ridge_nodes() + 1; }
 
-  /// These numbers of all ridges of owned faces at which, as far as this rank sees, fractures may meet.
+  /// Values of all ridges of owned faces that may be intersections according to the data of this rank.
   std::vector<Real> candidates() {
     std::vector<Real> found;
     for (LocalIndex f = 0; f < mesh_.n_owned_fracture_faces; ++f)
@@ -47,7 +47,7 @@ class LocalRidges {
  private:
   struct Seen {
     std::vector<int> fractures;
-    bool is_whole = true;  ///< this rank has all cells around, and so all faces
+    bool is_whole = true;  ///< all cells at the ridge, and thus all its faces, are on this rank
   };
 
   const Mesh& mesh_;
@@ -57,7 +57,7 @@ class LocalRidges {
 
   int n_ridge_nodes() const { return mesh_.dim() == 2 ? 1 : order(mesh_.shape) == 1 ? 2 : 3; }
 
-  /// Local nodes of the ridge that starts at a corner of one side of a face, ends ascending by their sets of copies.
+  /// Local nodes of the ridge at a corner of one side of a face. Ends are ordered by their set numbers.
   std::vector<LocalIndex> ridge(const Mesh::FractureFace& face, int side, int corner) const {
     const int n = n_face_corners(mesh_.shape);
     const auto& of_face = face.nodes[side];
@@ -87,7 +87,7 @@ class LocalRidges {
   }
 };
 
-/// What all ranks have, one after the other, on rank 0; nothing on others. Collective.
+/// Concatenates the values of all ranks on rank 0; empty on other ranks. Collective.
 std::vector<Real> gathered(const Comm& comm, std::vector<Real> here) {
   int n = static_cast<int>(here.size());
   if (comm.getRank() > 0) {

@@ -13,7 +13,7 @@
 namespace sprekk::mesh {
 namespace {
 
-using Ridge = std::array<GlobalIndex, 2>;  ///< corners before the split, sorted; in 2D the same one twice
+using Ridge = std::array<GlobalIndex, 2>;  ///< parent nodes of its corners, sorted; in 2D twice the same
 
 std::vector<MeshInfo::Part> parts(const std::vector<std::string>& names) {
   std::vector<MeshInfo::Part> result;
@@ -26,7 +26,7 @@ void add(MeshInfo::Part& part, Real measure) {
   part.measure += measure;
 }
 
-/// Calls use(ridge) for the ridges around a cell's face, by the nodes before the split.
+/// Calls use(ridge) for the ridges around a face of a cell. Ridges consist of nodes before splitting.
 template <class Use>
 void for_ridges(const GlobalMesh& mesh, GlobalIndex cell, int local_face, const Use& use) {
   const int n = n_face_corners(mesh.shape);
@@ -38,7 +38,7 @@ void for_ridges(const GlobalMesh& mesh, GlobalIndex cell, int local_face, const 
   }
 }
 
-/// The ridges of the mesh's free faces, aside from the sides of fractures.
+/// Ridges of fractures on the boundary faces of the mesh; sides of fractures are no boundary faces.
 std::set<Ridge> boundary_ridges(const GlobalMesh& mesh, const std::map<Ridge, std::vector<int>>& of_fractures) {
   const int per_cell = n_faces(mesh.shape);
   const auto neighbour = face_neighbours(mesh);

@@ -20,7 +20,7 @@ class Parser {
  public:
   Parser(std::string_view text, const std::string& file) : in_(text, file), file_(file) {}
 
-  /// The first section, which the file must have.
+  /// Reads the first section, which is mandatory: version, format, and sizes.
   void read_start() {
     SPREKK_CHECK(!in_.at_end(), "{}: is empty, expected a gmsh mesh", file_);
     const auto header = in_.line();
@@ -50,7 +50,7 @@ class Parser {
   std::string file_;
   bool is_version_4_ = false, has_entities_ = false;
   std::map<std::pair<int, int>, int> groups_of_entity_;  ///< by dimension and number; index into group_sets
-  std::map<std::vector<int>, int> set_of_groups_;        ///< of version 2.2; index into group_sets
+  std::map<std::vector<int>, int> set_of_groups_;        ///< version 2.2; index into group_sets
   MshFile mesh_;
 
   void read_section(const std::string& name) {
@@ -127,7 +127,7 @@ class Parser {
     }
   }
 
-  /// The texts between quotation marks, which are UTF-8.
+  /// Returns the texts in quotation marks. Throws an Error for invalid UTF-8.
   std::vector<std::string> quoted_texts(std::string_view line) const {
     if (base::where_not_utf8(line)) in_.fail(fmt::format("{} is not UTF-8", printable(line)));
     std::vector<std::string> texts;
@@ -184,10 +184,10 @@ class Parser {
     }
   }
 
-  /// The smallest number of words of what is written as so many four-byte words or so many numbers of text.
+  /// Minimum number of words of an item: four-byte words if binary, numbers if text.
   GlobalIndex words(GlobalIndex words, GlobalIndex numbers) const { return in_.is_binary() ? words : numbers; }
 
-  /// The numbers of blocks and of all that is in them; skips the least and the largest tag.
+  /// Reads the numbers of blocks and of items; skips the minimum and maximum tag.
   std::array<GlobalIndex, 2> read_block_header(const char* what) {
     const auto n_blocks = in_.count("blocks", 4), n = in_.count(what);
     for (int i = 0; i < 2; ++i) in_.long_integer("the least or largest number");
@@ -264,7 +264,8 @@ class Parser {
     return set->second;
   }
 
-  /// gmsh repeats an element of several groups in version 2.2, for each of them, under another number.
+  /// Merges repeated elements. In version 2.2, gmsh writes an element of several groups once per group, with different
+  /// numbers.
   void join_repeated() {
     if (mesh_.elements.size() < 2) return;
     const auto& last = mesh_.elements.back();
@@ -301,7 +302,7 @@ class Parser {
     check_total("elements", n_all, mesh_.elements.size() - n_before);
   }
 
-  /// Replaces the numbers of nodes by indices.
+  /// Replaces the tags of nodes by indices.
   void resolve_nodes() {
     std::unordered_map<GlobalIndex, GlobalIndex> index;
     index.reserve(mesh_.node_tags.size());

@@ -55,13 +55,13 @@ class MshBuilder {
   const std::string& file_;
   const MshOptions& options_;
   GlobalMesh mesh_;
-  Real size_ = 0;                                        ///< diagonal of the box around the mesh
+  Real size_ = 0;                                        ///< diagonal of the bounding box, m
   std::vector<const Element*> cell_;                     ///< [cell]
-  std::vector<GlobalIndex> node_of_point_;               ///< [point of the file], -1 if dropped
+  std::vector<GlobalIndex> node_of_point_;               ///< [point of the file] node, or -1 if dropped
   std::vector<GlobalIndex> neighbour_;                   ///< see face_neighbours()
   std::vector<MarkedFace> marked_;                       ///< of the fractures
   std::map<std::pair<int, int>, int> single_of_entity_;  ///< by group and entity; index into single_fractures
-  std::vector<int> whole_;  ///< [fracture] the single fracture that is all of it; -1: it has several
+  std::vector<int> whole_;                               ///< [fracture] its only single fracture; -1 if it has several
   InnerFaces inner_;
 
   template <class... Arguments>
@@ -116,10 +116,11 @@ class MshBuilder {
     }
   }
 
-  /// [set of groups] The group that is the region of its cells: the one that is a part of all others, of equal ones the
-  /// first, with a name if any of them has one; -1 where there is none.
+  /// Returns for each set of groups the group that is the region of its cells, or -1. It is the group contained in all
+  /// others of the set; among equal groups the first. Groups without a name are only considered if none of the set has
+  /// a name.
   std::vector<int> regions_of_sets() const {
-    std::map<int, std::set<int>> sets_of_group;  // with cells
+    std::map<int, std::set<int>> sets_of_group;  // sets that contain cells
     for (const auto* cell : cell_)
       for (const int group : msh_.group_sets[cell->groups]) sets_of_group[group].insert(cell->groups);
     const auto has_name = [&](int group) { return msh_.group_names.count({mesh_.dim(), group}) > 0; };
@@ -139,7 +140,7 @@ class MshBuilder {
     return regions;
   }
 
-  /// The index of a name, which is appended if it is new.
+  /// Returns the index of a name; appends new names.
   static int index_of(const std::string& name, std::vector<std::string>& names) {
     const auto found = std::find(names.begin(), names.end(), name);
     const auto index = static_cast<int>(found - names.begin());
@@ -147,7 +148,7 @@ class MshBuilder {
     return index;
   }
 
-  /// Takes the points of the cells over; until here mesh_.cells holds their place in the file.
+  /// Adds the points of the cells as nodes. Before this call, mesh_.cells contains indices into the points of the file.
   void add_nodes() {
     const int dim = mesh_.dim();
     std::vector<GlobalIndex> index(msh_.points.size(), -1);
@@ -215,8 +216,8 @@ class MshBuilder {
     }
   }
 
-  /// Neighbours lie on opposite sides of the face that they share and have the same nodes there; free faces lie on no
-  /// other.
+  /// Checks faces. Adjacent cells must lie on opposite sides of their common face with the same nodes. Free faces must
+  /// not touch each other.
   void check_faces() const {
     const int n = n_faces(mesh_.shape);
     const auto local = [&](GlobalIndex face) { return static_cast<int>(face % n); };
@@ -238,10 +239,11 @@ class MshBuilder {
     check_free(free_faces);
   }
 
-  /// The centre of no free face lies on another: there two parts of the mesh touch that do not share their nodes, or
-  /// one has nodes in the middle of the other's faces. Candidates are found along an oblique direction.
+  /// Checks that no centre of a free face lies on another free face. Otherwise, two parts of the mesh touch without
+  /// common nodes, or one has nodes within the faces of the other. Candidates are found by sorting along an oblique
+  /// direction.
   void check_free(const std::vector<GlobalIndex>& faces) const {
-    const Vector along{0.6127, 0.5431, 0.5741};  // along no axis, in which many faces would be level
+    const Vector along{0.6127, 0.5431, 0.5741};  // parallel to no axis, because many faces would have equal values
     const int n = n_faces(mesh_.shape);
     struct Centre {
       Real along;
@@ -282,7 +284,7 @@ class MshBuilder {
     return points;
   }
 
-  /// Whether x lies on the face with these corners, its edges included.
+  /// Returns true if x lies on the face with the given corners, including its edges.
   bool lies_on(const std::vector<Vector>& corners, const Vector& middle, const Vector& normal, const Vector& x) const {
     const Real tolerance = 1e-8 * size_;
     if (std::abs(dot(normal, x - middle)) > tolerance) return false;
@@ -296,7 +298,7 @@ class MshBuilder {
     return true;
   }
 
-  /// Takes the fractures' names over, each of which must be a group of faces.
+  /// Sets the names of the fractures. Throws an Error if a name is not a group of faces.
   void name_fractures() {
     const int dim = mesh_.dim() - 1;
     std::vector<std::string> names;
@@ -316,8 +318,8 @@ class MshBuilder {
     }
   }
 
-  /// What the file tells of fractures in sets; of a set that it tells nothing of, the set itself. Without any such line
-  /// that is left to split().
+  /// Sets the single fractures from the lines of the file. A set without lines is one single fracture. If the file has
+  /// no such line, split() sets them.
   void name_single_fractures() {
     if (msh_.fractures.empty()) return;
     std::map<std::string, std::vector<const MshFile::Fracture*>> of_set;

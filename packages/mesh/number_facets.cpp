@@ -14,8 +14,8 @@
 namespace sprekk::mesh {
 namespace {
 
-/// The nodes at a face's corners, sorted; -1 where there are fewer than four. `free`: of tied ones those that they are
-/// tied to.
+/// Nodes at the corners of a face, sorted; -1 fills arrays of fewer than four. With `free`, tied nodes are replaced by
+/// their free nodes.
 std::array<LocalIndex, 4> corners_of(const Mesh& mesh, LocalIndex face, bool free) {
   const auto& nodes = face_nodes(mesh.shape)[face % n_faces(mesh.shape)];
   const LocalIndex first = face / n_faces(mesh.shape) * mesh.nodes_per_cell();
@@ -29,13 +29,13 @@ std::array<LocalIndex, 4> corners_of(const Mesh& mesh, LocalIndex face, bool fre
   return corners;
 }
 
-/// Faces by their corners: hashed by the lowest one, a chain per node, first[node] -> next[face] -> ... -> -1.
+/// Hash table of faces by their lowest corner, with one chain per node: first[node] -> next[face] -> ... -> -1.
 class FaceTable {
  public:
   FaceTable(const Mesh& mesh, bool free)
       : mesh_(mesh), free_(free), first_(mesh.n_nodes(), -1), next_(mesh.n_cells() * n_faces(mesh.shape), -1) {}
   void add(LocalIndex face) { next_[face] = std::exchange(first_[corners_of(mesh_, face, free_)[0]], face); }
-  /// The next face after `from` (-1: the first) with the corners of this one; -1 for none.
+  /// Returns the next face after `from` (-1: the first) with the same corners as `face`; -1 if there is none.
   LocalIndex find(LocalIndex face, LocalIndex from = -1) const {
     const auto corners = corners_of(mesh_, face, free_);
     LocalIndex other = from < 0 ? first_[corners[0]] : next_[from];
@@ -49,7 +49,7 @@ class FaceTable {
   std::vector<LocalIndex> first_, next_;
 };
 
-/// Pairs faces that lie on tied sides with those that they are tied to.
+/// Pairs faces on tied sides with the faces to which they are tied.
 void pair_tied(const Mesh& mesh, const std::vector<LocalIndex>& faces, std::vector<LocalIndex>& across) {
   const auto is_tied = [&](LocalIndex face) {
     const auto corners = corners_of(mesh, face, false);
@@ -70,7 +70,7 @@ void pair_tied(const Mesh& mesh, const std::vector<LocalIndex>& faces, std::vect
   }
 }
 
-/// Calls visit(fracture face, cell * n_faces + local face) for the sides of fracture faces that have a local cell.
+/// Calls visit(fracture face, cell * n_faces + local face) for the sides of fracture faces with a local cell.
 template <class Visit>
 void for_fracture_sides(const Mesh& mesh, const Visit& visit) {
   for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
@@ -80,8 +80,8 @@ void for_fracture_sides(const Mesh& mesh, const Visit& visit) {
     }
 }
 
-/// For each face of a local cell [cell * n_faces + local face] the same face of the local cell across it, -1 for none;
-/// across tied sides, too.
+/// Returns for each face of a local cell [cell * n_faces + local face] the same face of the adjacent local cell, also
+/// across tied sides; -1 if there is none.
 std::vector<LocalIndex> faces_across(const Mesh& mesh) {
   const int n_faces = mesh::n_faces(mesh.shape);
   std::vector<LocalIndex> across(static_cast<std::size_t>(mesh.n_cells()) * n_faces, -1), alone;
@@ -104,8 +104,8 @@ std::vector<LocalIndex> faces_across(const Mesh& mesh) {
   return across;
 }
 
-/// For each face [cell * n_faces + local face] the same face of that cell that numbers and owns it: the one of the two
-/// with the lower number; -1 on fractures, whose faces are numbered as such.
+/// Returns for each face [cell * n_faces + local face] the face that numbers and owns the facet. It is the one of the
+/// cell with the lower number. Faces on fractures get -1, because fracture faces have their own numbers.
 std::vector<LocalIndex> face_givers(const Mesh& mesh, std::vector<LocalIndex> across) {
   const int n_faces = mesh::n_faces(mesh.shape);
   for (LocalIndex face = 0; face < static_cast<LocalIndex>(across.size()); ++face) {
@@ -117,7 +117,7 @@ std::vector<LocalIndex> face_givers(const Mesh& mesh, std::vector<LocalIndex> ac
   return across;
 }
 
-/// For each ridge [fracture face * n_face_corners + k] the same one of the local face with the lowest number.
+/// Returns for each ridge [fracture face * n_face_corners + k] the same ridge of the local face with the lowest number.
 std::vector<LocalIndex> ridge_givers(const Mesh& mesh) {
   const int n = n_face_corners(mesh.shape);
   std::map<std::array<GlobalIndex, 2>, LocalIndex> lowest;
@@ -134,8 +134,9 @@ std::vector<LocalIndex> ridge_givers(const Mesh& mesh) {
   return givers;
 }
 
-/// Global numbers of what entities end in, [entity * width + k]: those that an entity gives follow those that the
-/// entities before it give; -1 where none gives. What ends of owned entities take, local ones give. Collective.
+/// Returns the global numbers of facets or ridges, [entity * width + k]. An entity numbers those for which it is the
+/// giver, after the numbers given by the entities before it; -1 without a giver. The givers for owned entities must be
+/// local. Collective.
 std::vector<GlobalIndex> numbers(const std::vector<GlobalIndex>& entity_id, LocalIndex n_entities, int width,
                                  const std::vector<LocalIndex>& giver, const RCP<const Comm>& comm) {
   const LocalIndex n_owned = n_entities * width;
@@ -159,10 +160,10 @@ std::vector<GlobalIndex> face_ids(const Mesh& mesh) {
   return ids;
 }
 
-/// Where fracture faces end on the boundary: in the same points as a ridge of a face there, on whatever side.
+/// Finds ridges of fracture faces on the boundary: a boundary face has a ridge with the same points, on either side.
 std::vector<Facets::Rim> find_rims(const Mesh& mesh) {
   const int n = n_face_corners(mesh.shape);
-  std::vector<GlobalIndex> point(mesh.n_nodes(), -1);  // of nodes in fractures
+  std::vector<GlobalIndex> point(mesh.n_nodes(), -1);  // [node] point of a node on fractures
   for (const auto& face : mesh.fracture_faces)
     for (int side : {minus, plus})
       for (int k = 0; k < n && face.cell[side] >= 0; ++k) point[face.nodes[side][k]] = face.corners[k];
@@ -184,7 +185,7 @@ std::vector<Facets::Rim> find_rims(const Mesh& mesh) {
   return rims;
 }
 
-/// Where a periodic side makes edges of faces that are no neighbours end in the same points.
+/// Throws an Error if a periodic side identifies edges of faces that are not adjacent.
 void check_ridges(const Mesh& mesh, const std::vector<LocalIndex>& giver) {
   const int n = n_face_corners(mesh.shape);
   std::map<LocalIndex, std::vector<LocalIndex>> faces;  // by the giver of the ridge
@@ -200,7 +201,7 @@ void check_ridges(const Mesh& mesh, const std::vector<LocalIndex>& giver) {
   }
 }
 
-/// Local numbers of the ids: those of `all`, ascending, of which the first n_owned and the others are sorted.
+/// Returns the local numbers of `ids` in `all`; the first n_owned entries and the other ones are each sorted.
 std::vector<LocalIndex> local_numbers(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& all,
                                       LocalIndex n_owned) {
   const auto middle = all.begin() + n_owned;
@@ -230,7 +231,7 @@ RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh) {
   auto ridges = numbers(face_ids(*mesh), mesh->n_owned_fracture_faces, n_ridges, of_faces, mesh->comm);
   auto faces = face_ids(*mesh);
   const auto facets = rcp(new Facets);
-  const auto own = [&](const auto& ids, LocalIndex n, const auto& is_own) {  // numbers ascend as entities do
+  const auto own = [&](const auto& ids, LocalIndex n, const auto& is_own) {  // numbers ascend with the entities
     const auto before = facets->id.size();
     for (LocalIndex k = 0; k < n; ++k)
       if (is_own(k)) facets->id.push_back(ids[k]);

@@ -11,15 +11,16 @@ using FractureFaces = std::vector<GlobalMesh::FractureFace>;
 
 struct Neighbour {
   int face;
-  bool reversed;  ///< the two faces, each with the normal out of its minus cell, point to opposite sides
+  bool reversed;  ///< the normals out of the two minus cells point to opposite sides
 };
 
-/// For each fracture face its neighbours over edges (2D: nodes) that exactly two faces of the fracture share.
+/// Returns for each fracture face its neighbours. Neighbours share an edge (2D: node) at which the fracture has exactly
+/// two faces.
 std::vector<std::vector<Neighbour>> neighbours(const GlobalMesh& mesh, const FractureFaces& faces) {
   struct Ridge {
-    std::array<GlobalIndex, 3> key;  ///< fracture and the ridge's nodes, sorted
+    std::array<GlobalIndex, 3> key;  ///< fracture and nodes of the ridge, sorted
     int face;
-    bool forward;  ///< the face's node order runs through the ridge in ascending order; 2D: starts there
+    bool forward;  ///< node order of the face along the ridge is ascending; 2D: the face starts there
   };
   std::vector<Ridge> ridges;
   const int n = n_face_corners(mesh.shape);
@@ -50,7 +51,7 @@ void swap_sides(GlobalMesh::FractureFace& face) {
   std::swap(face.local_face[minus], face.local_face[plus]);
 }
 
-/// Whether the normals of a consistent piece must be reversed to obey the rule.
+/// Returns true if the normals of a consistent piece must be reversed to fulfil the rule of orient().
 bool points_backward(const GlobalMesh& mesh, const FractureFaces& faces, const std::vector<int>& piece,
                      const Orientation& orientation) {
   constexpr Real tolerance = 1e-8;

@@ -18,10 +18,10 @@ namespace {
 
 constexpr idx_t fracture_edge_weight = 4, n_seeds = 10;
 
-/// The cell graph in compressed rows, without repeated edges.
+/// Graph of the cells in compressed rows, without repeated edges.
 struct Graph {
   std::vector<idx_t> offsets, neighbours, edge_weights;
-  std::vector<idx_t> weights;  ///< [cell * 2 + constraint]: one cell, fracture faces with this minus cell
+  std::vector<idx_t> weights;  ///< [cell * 2 + constraint]: one cell; number of fracture faces with this minus cell
 };
 
 Graph cell_graph(const GlobalMesh& mesh) {
@@ -59,10 +59,11 @@ struct Tolerances {
   double cells, fracture_faces;  ///< largest part / mean
 };
 
-/// What METIS makes of the graph; without tolerances the cells alone are balanced, as well as it can.
+/// Partitions the graph with METIS. Without tolerances, only the cells are balanced, as well as METIS can.
 std::vector<int> metis_partition(Graph& graph, int n_parts, idx_t seed, const std::optional<Tolerances>& tolerances) {
-  const bool recursive = n_parts <= 8;                                    // as its manual advises
-  const double n_levels = recursive ? std::ceil(std::log2(n_parts)) : 1;  // of bisections, whose imbalances multiply
+  const bool recursive = n_parts <= 8;  // recommended in the manual of METIS
+  const double n_levels =
+      recursive ? std::ceil(std::log2(n_parts)) : 1;  // levels of bisections, whose imbalances multiply
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = seed;
@@ -82,14 +83,14 @@ std::vector<int> metis_partition(Graph& graph, int n_parts, idx_t seed, const st
   return {part.begin(), part.end()};
 }
 
-/// Sum of the cells' weights in each part.
+/// Sum of the cell weights in each part.
 std::vector<idx_t> loads(const Graph& graph, const std::vector<int>& part, int n_parts, int constraint) {
   std::vector<idx_t> result(n_parts, 0);
   for (std::size_t cell = 0; cell < part.size(); ++cell) result[part[cell]] += graph.weights[2 * cell + constraint];
   return result;
 }
 
-/// Largest load / mean load; 1 where there is none.
+/// Largest load / mean load; 1 without loads.
 double imbalance(const std::vector<idx_t>& loads) {
   const double sum = std::accumulate(loads.begin(), loads.end(), 0.0);
   return sum > 0 ? static_cast<double>(*std::max_element(loads.begin(), loads.end())) *
@@ -97,7 +98,7 @@ double imbalance(const std::vector<idx_t>& loads) {
                  : 1;
 }
 
-/// Gives each empty part a cell of the largest one.
+/// Moves a cell of the largest part to each empty part.
 void fill_empty_parts(const Graph& graph, std::vector<int>& part, int n_parts) {
   auto n_cells = loads(graph, part, n_parts, 0);
   for (int empty = 0; empty < n_parts; ++empty) {
@@ -119,8 +120,9 @@ std::vector<int> partition(const GlobalMesh& mesh, int n_parts) {
     std::iota(best.begin(), best.end(), 0);
     return best;
   }
-  // METIS meets two tolerances at once with luck only, so it is asked again, with another seed, until it does; else the
-  // cells come first. The tolerances allow for a cell, and for the few fracture faces of a small mesh, in each part.
+  // METIS seldom meets two tolerances at once. The code therefore tries several seeds until both are met; otherwise the
+  // balance of cells has priority. The tolerances allow for one cell, and for the few fracture faces of a small mesh,
+  // per part.
   Graph graph = cell_graph(mesh);
   const double parts = n_parts, n_cells = static_cast<double>(mesh.n_cells()),
                n_faces = std::max(1.0, static_cast<double>(mesh.fracture_faces.size()));

@@ -33,7 +33,7 @@ Vector mean_centre(const GlobalMesh& mesh, const std::vector<BoundaryFace>& face
   return (1.0 / static_cast<Real>(std::max<std::size_t>(faces.size(), 1))) * sum;
 }
 
-/// Ties the nodes of the faces `second` to those of `first`.
+/// Ties the nodes of the second boundary to those of the first. Throws an Error if faces or nodes do not match.
 void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>& names, UnionFind& ties) {
   const auto first = faces_of(mesh, names.first), second = faces_of(mesh, names.second);
   SPREKK_CHECK(first.size() == second.size() && !first.empty(),
@@ -41,7 +41,7 @@ void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>
                names.second, first.size(), second.size());
   const Vector shift = mean_centre(mesh, second) - mean_centre(mesh, first);
   const Real tolerance = 1e-6 * norm(shift) / std::pow(static_cast<Real>(mesh.n_cells()), 1.0 / mesh.dim());
-  using Key = std::array<long long, 3>;  // centres on a lattice much finer than the mesh
+  using Key = std::array<long long, 3>;  // centres, rounded to a lattice much finer than the mesh
   const auto key = [&](const Vector& x) {
     return Key{std::llround(x[0] / (100 * tolerance)), std::llround(x[1] / (100 * tolerance)),
                std::llround(x[2] / (100 * tolerance))};

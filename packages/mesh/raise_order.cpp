@@ -9,7 +9,7 @@
 namespace sprekk::mesh {
 namespace {
 
-using Corners = std::array<GlobalIndex, 4>;  ///< sorted; -1 first where there are two
+using Corners = std::array<GlobalIndex, 4>;  ///< sorted; unused entries are -1 and come first
 
 struct Hash {
   std::size_t operator()(const Corners& corners) const {
@@ -19,8 +19,8 @@ struct Hash {
   }
 };
 
-/// The corners whose mean each added node is, in the order of the nodes; from the faces' node lists, so that there is
-/// one table of numbering.
+/// Returns for each added node the corners whose mean it is. The result is derived from the node lists of faces, so
+/// only one table defines the numbers.
 std::vector<std::vector<int>> parents(Shape shape) {
   const int n_added = n_nodes(shape) - n_corners(shape), n_around = n_face_corners(shape);
   std::vector<std::vector<int>> result(n_added);

@@ -14,10 +14,10 @@
 namespace sprekk::mesh {
 namespace {
 
-/// Places for added nodes are numbered [cell * n_added + k]. A node is a set of places that are one: those with the
-/// same corners, or in a fracture those that cells reach each other through faces that are not in fractures. All places
-/// of a node of an owned cell are on this rank, so that all ranks that own one agree on the node; what ghosts have
-/// among themselves their owners tell.
+/// Finder of common nodes. Places for added nodes have the numbers [cell * n_added + k]. Places with the same corners
+/// form one node. In fractures, this requires cells connected through faces outside fractures. All places of a node of
+/// an owned cell are on this rank, so all ranks with an owned cell at the node agree. Ghosts get their nodes from their
+/// owners.
 class PlaceFinder {
  public:
   explicit PlaceFinder(const Mesh& mesh)
@@ -29,7 +29,7 @@ class PlaceFinder {
         first_(mesh.n_cells() * n_added_),
         sets_(mesh.n_cells() * n_added_) {}
 
-  /// The sets of places that are one node.
+  /// Returns the sets of places that form one node.
   UnionFind find() {
     find_same_corners();
     find_in_fractures();
@@ -40,13 +40,13 @@ class PlaceFinder {
   }
 
  private:
-  using Corners = std::array<LocalIndex, 4>;  ///< sorted; unused ones are the largest number
+  using Corners = std::array<LocalIndex, 4>;  ///< sorted; unused entries have the largest number
 
   const Mesh& mesh_;
   const Shape shape_;
   const int n_before_, n_added_;
   const std::vector<unsigned> corners_;
-  std::vector<LocalIndex> first_;  // [place] the first one with the same corners
+  std::vector<LocalIndex> first_;  // [place] first place with the same corners
   std::vector<char> in_fracture_;  // [first place]
   UnionFind sets_;
 
@@ -67,7 +67,7 @@ class PlaceFinder {
     return corners_[n_before_ + place % n_added_] == (1u << n_before_) - 1;
   }
 
-  /// Places hashed by their lowest corner: a chain per node.
+  /// Finds places with equal corners; places are hashed by their lowest corner, with one chain per node.
   void find_same_corners() {
     std::vector<LocalIndex> chain(mesh_.n_nodes(), -1), next(first_.size(), -1);
     for (LocalIndex place = 0; place < n_places(); ++place) {
@@ -83,7 +83,7 @@ class PlaceFinder {
     }
   }
 
-  /// Calls use(place) for those on a cell's face.
+  /// Calls use(place) for the places on a face of a cell.
   template <class Use>
   void for_places(LocalIndex cell, int local_face, const Use& use) const {
     for (int k = n_face_corners(shape_); k < n_face_nodes(shape_); ++k)
@@ -108,7 +108,7 @@ class PlaceFinder {
     const int faces_per_cell = n_faces(shape_);
     std::vector<bool> is_side(static_cast<std::size_t>(mesh_.n_cells()) * faces_per_cell, false);
     for_fracture_sides([&](LocalIndex cell, int local_face) { is_side[cell * faces_per_cell + local_face] = true; });
-    std::map<Corners, std::pair<LocalIndex, int>> open;  // faces that wait for the cell across
+    std::map<Corners, std::pair<LocalIndex, int>> open;  // faces whose adjacent cell is not found yet
     for (LocalIndex cell = 0; cell < mesh_.n_cells(); ++cell)
       for (int f = 0; f < faces_per_cell; ++f) {
         bool touches = false;
@@ -136,7 +136,8 @@ class PlaceFinder {
   }
 };
 
-/// Numbers the added nodes in the order of the lowest cells that have them, whatever rank has those.
+/// Raises the order of a part. Added nodes are numbered in the order of their lowest cells, independent of the
+/// distribution.
 class PartRaiser {
  public:
   explicit PartRaiser(const Mesh& mesh)
@@ -164,7 +165,7 @@ class PartRaiser {
   const Shape shape_;
   const int n_before_, n_added_;
   UnionFind sets_;
-  std::vector<LocalIndex> lowest_;           // [first place of a node] its place in the cell of the lowest number
+  std::vector<LocalIndex> lowest_;           // [first place of a node] its place in the cell with the lowest number
   std::vector<int> owner_;                   // [first place of a node] rank
   std::vector<GlobalIndex> ids_;             // [place] number of its node
   std::vector<GlobalIndex> owned_, ghosts_;  // numbers of added nodes, ascending
@@ -209,7 +210,7 @@ class PartRaiser {
     std::set_difference(all.begin(), all.end(), owned_.begin(), owned_.end(), std::back_inserter(ghosts_));
   }
 
-  /// Owned nodes stay, added ones follow; so do ghosts.
+  /// New local number of a node: added owned nodes follow the owned ones and precede the ghosts.
   LocalIndex moved(LocalIndex node) const {
     return node < mesh_.n_owned_nodes ? node : node + static_cast<LocalIndex>(owned_.size());
   }
@@ -247,7 +248,7 @@ class PartRaiser {
     }
   }
 
-  /// Of a coordinate of corners, the same to the last bit for any order of them.
+  /// Mean coordinate of corners, bitwise identical for any order of the corners.
   Real mean(LocalIndex cell, unsigned corners, int component) const {
     std::array<Real, 8> x;
     x.fill(std::numeric_limits<Real>::infinity());
@@ -258,7 +259,7 @@ class PartRaiser {
     return std::accumulate(x.begin(), x.begin() + n, Real{0}) / n;
   }
 
-  /// The nodes of both sides in the order of the cell on side minus, by the corners that they lie between.
+  /// Sets the nodes of both sides in the order of the minus cell. Added nodes are identified by their corners.
   void fill_face(const Mesh& result, Mesh::FractureFace& face) const {
     const auto before = face.nodes;
     const int n = n_face_corners(shape_);
@@ -266,7 +267,7 @@ class PartRaiser {
       if (face.cell[side] < 0) continue;
       const auto& all = face_nodes(shape_)[face.local_face[side]];
       const auto node = [&](int k) { return result.cells[face.cell[side] * n_nodes(shape_) + all[k]]; };
-      std::array<int, 4> corner{};  // of the cell's face, for each in the order of side minus
+      std::array<int, 4> corner{};  // for each corner of side minus, the corner of the cell's face
       for (int k = 0; k < n; ++k) {
         face.nodes[side][k] = moved(before[side][k]);
         while (corner[k] < n && node(corner[k]) != face.nodes[side][k]) ++corner[k];
@@ -276,7 +277,7 @@ class PartRaiser {
     }
   }
 
-  /// The node of a face that lies between the images of the corners between which node k does.
+  /// Node of a face between the images of the two corners of node k.
   int partner(const std::array<int, 4>& image, int k) const {
     const int n = n_face_corners(shape_);
     if (dimension(shape_) == 2 || k == 2 * n) return k;

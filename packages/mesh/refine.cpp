@@ -15,7 +15,7 @@
 namespace sprekk::mesh {
 namespace {
 
-/// Cuts cells of order 2 along their nodes into cells of order 1.
+/// Divides cells of order 2 into cells of order 1 with the same nodes.
 class Divider {
  public:
   explicit Divider(const Mesh& mesh)
@@ -39,8 +39,8 @@ class Divider {
   const Shape shape_;
   const Subdivision division_;
   const std::vector<GlobalIndex> ridges_;  // [fracture face * n_face_corners + k] see ridge_ids()
-  std::vector<LocalIndex> child_;  // [cell * n_children + k] its number, -1 for ghosts that are not needed any more
-  std::vector<LocalIndex> node_;   // [node] its new number, -1 for ghosts that are not needed any more
+  std::vector<LocalIndex> child_;  // [cell * n_children + k] number of the child; -1 for ghosts no longer required
+  std::vector<LocalIndex> node_;   // [node] new number; -1 for ghosts no longer required
   RCP<Mesh> result_ = rcp(new Mesh);
 
   int n_children() const { return division_.n_children(); }
@@ -53,17 +53,19 @@ class Divider {
     for (int i = 0; i < n_corners(shape_); ++i) use(node(cell, division_.children[child][i]));
   }
 
-  /// The part of a fracture face's side that has corner k of side minus, or the one amid.
+  /// Part of a side of a fracture face at corner k of side minus, or the inner part.
   const Part& part(const Mesh::FractureFace& face, int side, int k) const {
     int corner = k;
-    if (k < n_face_corners(shape_) && face.cell[side] >= 0)  // else its number alone is needed, the same at all corners
+    if (k < n_face_corners(shape_) &&
+        face.cell[side] >= 0)  // without the cell only the child's number is used; it is equal at all corners
       for (corner = 0; node(face.cell[side], face_nodes(shape_)[face.local_face[side]][corner]) != face.nodes[side][k];)
         SPREKK_CHECK(++corner < n_face_corners(shape_), "mesh: a corner of fracture face {} is none of its cell",
                      face.id);
     return division_.of_face[face.local_face[side]][corner];
   }
 
-  /// Owned ones, those that share a node with them, and those opposite to them in fractures.
+  /// Selects the owned children, those that share a node with them, and those on the opposite side of owned fracture
+  /// faces.
   void choose_children() {
     std::vector<bool> is_near(mesh_.n_nodes(), false);
     for (LocalIndex i = 0; i < mesh_.n_owned_cells * mesh_.nodes_per_cell(); ++i) is_near[mesh_.cells[i]] = true;
@@ -84,7 +86,7 @@ class Divider {
       if (number >= 0) number = n++;
   }
 
-  /// Those on side minus of parts that end where those of owned faces do.
+  /// Selects the minus-side children of parts that share a ridge with a part of an owned face.
   void choose_around_ridges() {
     const int n = n_face_corners(shape_);
     const std::unordered_set<GlobalIndex> owned(ridges_.begin(),
@@ -167,7 +169,7 @@ class Divider {
       }
   }
 
-  /// Corners are in the order of the part on side minus.
+  /// Adds a part of a fracture face. Corners have the order of the part on side minus.
   void add_fracture_face(const Mesh::FractureFace& parent, int k, const std::array<const Part*, 2>& parts,
                          const std::array<LocalIndex, 2>& cells) {
     Mesh::FractureFace face;
@@ -194,7 +196,7 @@ class Divider {
     result_->fracture_faces.push_back(face);
   }
 
-  /// The number of the point at a node of a face of order 2: a corner, the middle of an edge, or the one inside.
+  /// Number of the point at a node of a face of order 2: corner, edge midpoint, or interior.
   GlobalIndex point(const Mesh::FractureFace& face, int node) const {
     const int n = n_face_corners(shape_);
     if (node < n) return face.corners[node];
@@ -211,7 +213,7 @@ class Divider {
   }
 };
 
-/// The largest sum of squared edges of the cells inside of a tetrahedron with these corners.
+/// Largest sum of squared edges of the inner children of a tetrahedron with the given corners, m^2.
 Real worst_inside(const std::array<Vector, 4>& x) {
   const auto division = subdivision(Shape::tetrahedron);
   const auto middle = [&](int a, int b) { return 0.5 * (x[a] + x[b]); };
@@ -230,7 +232,7 @@ Real worst_inside(const std::array<Vector, 4>& x) {
   return worst;
 }
 
-/// No rank goes on to numbers that its indices cannot hold.
+/// Throws an Error if the refined mesh exceeds the range of the indices or the memory of a rank. Collective.
 void check_size(const Mesh& mesh, int times) {
   const Real factor = std::pow(subdivision(mesh.shape).n_children(), times),
              nodes_per_cell = n_nodes(quadratic(mesh.shape)), here = factor * static_cast<Real>(mesh.n_cells()),
@@ -265,7 +267,7 @@ void turn_for_refinement(GlobalMesh& mesh) {
       std::array<Vector, 4> x;
       for (int k = 0; k < 4; ++k) x[k] = point(mesh, corners[turns[t][k]]);
       const Real here = worst_inside(x);
-      if (!(here < (1 - 1e-10) * best)) continue;  // of equals the first, whatever rounding says
+      if (!(here < (1 - 1e-10) * best)) continue;  // among equal values up to rounding the first is used
       best = here;
       turn[cell] = static_cast<char>(t);
     }

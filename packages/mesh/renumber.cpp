@@ -11,7 +11,7 @@ namespace {
 std::vector<GlobalIndex> random_permutation(GlobalIndex n, std::mt19937_64& random) {
   std::vector<GlobalIndex> result(n);
   std::iota(result.begin(), result.end(), GlobalIndex{0});
-  for (GlobalIndex i = n - 1; i > 0; --i)  // std::shuffle differs between libraries
+  for (GlobalIndex i = n - 1; i > 0; --i)  // own shuffle: the result of std::shuffle depends on the library
     std::swap(result[i], result[random() % (i + 1)]);
   return result;
 }

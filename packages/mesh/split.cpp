@@ -12,7 +12,7 @@ namespace {
 
 using FractureFaces = std::vector<GlobalMesh::FractureFace>;
 
-/// The marked faces with both their cells, each face once.
+/// Marked faces with their two cells, each face once. Throws an Error for faces on the boundary or in two fractures.
 FractureFaces two_sided(const GlobalMesh& mesh, const std::vector<MarkedFace>& marked,
                         const std::vector<GlobalIndex>& neighbour) {
   const int faces_per_cell = n_faces(mesh.shape);
@@ -41,7 +41,7 @@ FractureFaces two_sided(const GlobalMesh& mesh, const std::vector<MarkedFace>& m
   return faces;
 }
 
-/// Gives each set of cells that unmarked faces connect around a fracture node its own copy of that node.
+/// Copies fracture nodes. Each set of cells at a node that is connected through unmarked faces gets its own copy.
 void split_nodes(GlobalMesh& mesh) {
   const auto neighbour = face_neighbours(mesh);
   const int faces_per_cell = n_faces(mesh.shape), nodes_per_cell = n_nodes(mesh.shape), dim = mesh.dim();
@@ -57,7 +57,7 @@ void split_nodes(GlobalMesh& mesh) {
     const auto first = mesh.cells.begin() + cell * nodes_per_cell;
     return std::find(first, first + nodes_per_cell, node) - mesh.cells.begin();
   };
-  UnionFind sets(static_cast<GlobalIndex>(mesh.cells.size()));  // of cell corners [cell * n_nodes + local node]
+  UnionFind sets(static_cast<GlobalIndex>(mesh.cells.size()));  // sets of cell corners [cell * n_nodes + local node]
   for (GlobalIndex face = 0; face < static_cast<GlobalIndex>(neighbour.size()); ++face) {
     if (neighbour[face] < face || is_fracture_face[face]) continue;
     const GlobalIndex cell = face / faces_per_cell, other = neighbour[face] / faces_per_cell;

@@ -8,7 +8,8 @@
 namespace sprekk::mesh {
 namespace {
 
-/// The copies of the cell at its corners: their corner i is the node amid what of the cell corners k and i span.
+/// Children at the corners of the cell. Corner i of child k is the midpoint node of the edge, face or cell spanned by
+/// the corners k and i.
 std::vector<std::array<int, 8>> corner_children(Shape shape) {
   const auto corners = corners_of_nodes(quadratic(shape));
   const auto size = [&](unsigned set) { return std::bitset<8>(set).count(); };
@@ -25,7 +26,7 @@ std::vector<std::array<int, 8>> corner_children(Shape shape) {
   return result;
 }
 
-/// The part of a face that a child has as its face; child -1 if it has none.
+/// Part of a face that is covered by a face of a child; child = -1 if the child's face lies elsewhere.
 Subdivision::Part part_on(Shape shape, int face, int child, const std::array<int, 8>& nodes, int local_face) {
   const auto& all = face_nodes(quadratic(shape))[face];
   Subdivision::Part part{child, local_face, {-1, -1, -1, -1}};
@@ -43,7 +44,7 @@ std::vector<Subdivision::Part> parts_of(Shape shape, int face, const std::vector
   for (int child = 0; child < static_cast<int>(children.size()); ++child)
     for (int f = 0; f < n_faces(shape); ++f)
       if (const auto part = part_on(shape, face, child, children[child], f); part.child >= 0) result.push_back(part);
-  const auto lowest = [&](const Subdivision::Part& part) {  // the face's corner, if the part has one
+  const auto lowest = [&](const Subdivision::Part& part) {  // corner of the face, if the part has one
     return *std::min_element(part.nodes.begin(), part.nodes.begin() + n_face_corners(shape));
   };
   std::sort(result.begin(), result.end(), [&](const auto& a, const auto& b) { return lowest(a) < lowest(b); });

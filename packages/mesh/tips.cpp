@@ -14,7 +14,7 @@ namespace {
 
 using Nodes = std::array<GlobalIndex, max_face_nodes>;
 
-/// Nodes of one side of a fracture face; -1 where this rank does not have it.
+/// Nodes of one side of a fracture face; -1 if not on this rank.
 Nodes nodes_of_side(const GlobalMesh& mesh, const GlobalMesh::FractureFace& face, int side) {
   return nodes_of_face(mesh, face.cell[side], face.local_face[side]);
 }
@@ -25,7 +25,7 @@ Nodes nodes_of_side(const Mesh&, const Mesh::FractureFace& face, int side) {
   return nodes;
 }
 
-/// Calls use(free node) for the corners of one side of a fracture face, as far as they are there.
+/// Calls use(free node) for the corners of one side of a fracture face, if they are on this rank.
 template <class AnyMesh, class Face, class Use>
 void for_corners(const AnyMesh& mesh, const Face& face, int side, const Use& use) {
   const auto nodes = nodes_of_side(mesh, face, side);
@@ -33,14 +33,14 @@ void for_corners(const AnyMesh& mesh, const Face& face, int side, const Use& use
     if (nodes[k] >= 0) use(mesh.free_node(nodes[k]));
 }
 
-/// Gives tied nodes what the nodes have that they are tied to.
+/// Copies the values of free nodes to the nodes tied to them.
 template <class AnyMesh>
 void copy_to_tied(const AnyMesh& mesh, std::vector<char>& values) {
   for (std::size_t node = values.size() - mesh.tied_to.size(); node < values.size(); ++node)
     values[node] = values[mesh.free_node(node)];
 }
 
-/// share(values) brings the values of nodes from ranks that see all that is around them to those that do not.
+/// Marks tips. share(values) sends nodal values from ranks with all cells at a node to the other ranks.
 template <class AnyMesh, class Share>
 std::vector<char> find_tips(const AnyMesh& mesh, const Share& share) {
   std::vector<char> is_tip(mesh.n_nodes(), 0);
@@ -82,7 +82,7 @@ std::vector<char> find_marks(const AnyMesh& mesh, const Share& share) {
   return marks;
 }
 
-/// Nodes that are no tips but in a cell with one; right for owned ones.
+/// Marks nodes that are not tips but belong to a cell with a tip. The result is correct for owned nodes.
 std::vector<char> find_enriched(const Mesh& mesh) {
   const int n = mesh.nodes_per_cell();
   std::vector<char> result(mesh.n_nodes(), 0);
@@ -95,7 +95,7 @@ std::vector<char> find_enriched(const Mesh& mesh) {
   return result;
 }
 
-/// In the order of the numbers of nodes.
+/// Numbers the enriched nodes in the order of the node numbers. Collective.
 void number_enriched(Mesh& mesh, const GhostExchange& exchange) {
   const auto is_enriched = find_enriched(mesh);
   const std::vector<GlobalIndex> owned(mesh.node_id.begin(), mesh.node_id.begin() + mesh.n_owned_nodes),

@@ -15,10 +15,10 @@
 namespace sprekk::mesh {
 namespace {
 
-/// Entities of one kind that are left, the owned ones first.
+/// Remaining entities of one kind, owned ones first.
 struct Left {
-  std::vector<LocalIndex> old;  ///< [entity] its local number in the whole mesh
-  std::vector<LocalIndex> now;  ///< [entity of the whole mesh] its local number, -1: gone
+  std::vector<LocalIndex> old;  ///< [entity] local number in the whole mesh
+  std::vector<LocalIndex> now;  ///< [entity of the whole mesh] local number; -1 if removed
   LocalIndex n_owned = 0;
 
   explicit Left(LocalIndex n = 0) : now(n, -1) {}
@@ -67,7 +67,7 @@ class Excavation {
  private:
   bool is_gone(LocalIndex cell) const { return boundary_of_[whole_.cell_region[cell]] >= 0; }
 
-  /// Numbers 0, 1, ... in the order of the old ones. Collective.
+  /// Returns numbers 0, 1, ... in the order of the old numbers. Collective.
   std::vector<GlobalIndex> renumbered(const std::vector<GlobalIndex>& old, LocalIndex n_owned) const {
     const std::vector<GlobalIndex> owned(old.begin(), old.begin() + n_owned);
     auto numbers = sums_before(owned, std::vector<GlobalIndex>(n_owned, 1), whole_.comm);
@@ -96,7 +96,8 @@ class Excavation {
     mesh_.cells = cells_.of(whole_.cells, whole_.nodes_per_cell());
   }
 
-  /// A node belongs to the lowest rank that has a cell around it; of those around an owned cell all are local.
+  /// Selects the remaining nodes. A node belongs to the lowest rank that owns a cell at the node. All cells at the
+  /// nodes of owned cells are local.
   void find_nodes() {
     const int n = whole_.nodes_per_cell(), rank = whole_.comm->getRank(), none = whole_.comm->getSize();
     std::vector<int> owner(whole_.n_nodes(), none);
@@ -122,8 +123,9 @@ class Excavation {
     for (auto& node : mesh_.cells) node = nodes_.now[node];
   }
 
-  /// [fracture face] the boundary that its other side ends on where one side is gone, or that of its minus side where
-  /// both are; -1: the face is left. The owner, who has both cells, tells the others.
+  /// Returns for each fracture face the new boundary at its remaining side; -1 if both sides remain. If both are
+  /// removed, it is the boundary of the minus side. The owner, which has both cells, sends the result to the other
+  /// ranks.
   std::vector<int> lost_to() const {
     std::vector<int> lost;
     std::vector<GlobalIndex> ids;
@@ -162,7 +164,7 @@ class Excavation {
     mesh_.fracture_faces = std::move(faces);
   }
 
-  /// The nodes at the corners of a face [cell * n_faces + local face] of the whole mesh, sorted.
+  /// Nodes at the corners of a face [cell * n_faces + local face] of the whole mesh, sorted.
   SortedCorners corners(LocalIndex face) const {
     const int n_faces = mesh::n_faces(whole_.shape), n = n_face_corners(whole_.shape);
     SortedCorners sorted{-1, -1, -1, -1};
@@ -172,7 +174,7 @@ class Excavation {
     return sorted;
   }
 
-  /// [cell * n_faces + local face] the local fracture face there, -1: none.
+  /// [cell * n_faces + local face] local fracture face there, or -1.
   std::vector<LocalIndex> fracture_face_at() const {
     const int n_faces = mesh::n_faces(whole_.shape);
     std::vector<LocalIndex> at(std::size_t(whole_.n_cells()) * n_faces, -1);
@@ -187,7 +189,7 @@ class Excavation {
   void find_boundary_faces() {
     const int n_faces = mesh::n_faces(whole_.shape);
     const auto fracture_face = fracture_face_at();
-    std::unordered_map<SortedCorners, int, SortedCornersHash> walls;  // boundaries by the corners of faces
+    std::unordered_map<SortedCorners, int, SortedCornersHash> walls;  // boundaries by corners of faces
     std::vector<Mesh::BoundaryFace> faces;
     const auto add = [&](int boundary, LocalIndex cell, int local_face) {
       faces.push_back({boundary, cells_.now[cell], local_face, cell < whole_.n_owned_cells});
@@ -210,7 +212,7 @@ class Excavation {
     mesh_.boundary_faces = std::move(faces);
   }
 
-  /// Nodes that are no tips but in a cell with one, as far as there still is one.
+  /// Finds the nodes that are not tips but belong to a remaining cell with a tip.
   void find_enriched() {
     if (whole_.enriched.empty()) return;
     const int n = whole_.nodes_per_cell();
@@ -234,7 +236,7 @@ class Excavation {
     mesh_.n_global_enriched = count(mesh_.n_owned_enriched);
   }
 
-  /// Cells of one piece get the lowest number of them, rank by rank until none changes.
+  /// Numbers the pieces. The cells of a piece get their lowest number, exchanged between ranks until no value changes.
   void find_pieces() {
     const int n_faces = mesh::n_faces(whole_.shape);
     const auto fracture_face = fracture_face_at();
@@ -258,7 +260,7 @@ class Excavation {
       exchange(lowest);
       changes = base::on_any_rank(*whole_.comm, lowest != before);
     }
-    std::vector<GlobalIndex> first;  // cells that give a piece its number
+    std::vector<GlobalIndex> first;  // cells with the lowest number in a piece
     for (LocalIndex cell = 0; cell < mesh_.n_owned_cells; ++cell)
       if (lowest[cell] == mesh_.cell_id[cell]) first.push_back(lowest[cell]);
     first = base::gather_over_ranks(*whole_.comm, first);
@@ -270,7 +272,7 @@ class Excavation {
           static_cast<int>(std::lower_bound(first.begin(), first.end(), number) - first.begin()));
   }
 
-  /// What a facet of a cell, a fracture face or a ridge of one was in the whole mesh.
+  /// Sets the numbers of facets in the whole mesh, from those of cells, fracture faces and ridges.
   RCP<const Mesh> with_origin_of_facets(const RCP<const Mesh>& mesh) {
     auto& numbers = origin_->facets;
     numbers.assign(mesh->facets->id.size(), -1);
@@ -288,10 +290,10 @@ class Excavation {
   const Mesh& whole_;
   Mesh mesh_;
   RCP<Mesh::Origin> origin_ = rcp(new Mesh::Origin);
-  std::vector<int> boundary_of_;  // [region] of the walls, -1: it stays
+  std::vector<int> boundary_of_;  // [region] boundary of the walls; -1 for remaining regions
   Left cells_, nodes_;
-  std::vector<LocalIndex> old_faces_;  // [fracture face]
-  std::vector<int> lost_to_;           // [fracture face of the whole mesh]
+  std::vector<LocalIndex> old_faces_;  // [fracture face] local number in the whole mesh
+  std::vector<int> lost_to_;           // [fracture face of the whole mesh] see lost_to()
 };
 
 }  // namespace
