@@ -60,8 +60,8 @@ void describe_tips(base::Section& section, std::string& tips);
 ///
 /// Regions: "bulk", then those of the parameters. Boundaries: "west" (x-), "east" (x+), "south" (y-), "north" (y+),
 /// "bottom" (z-), "top" (z+), named before the rotation. Fractures are in the order of their names. They are split and
-/// oriented (see split()) after the rotation. Throws an Error if parameters are inconsistent, if a fracture is not on a
-/// mesh plane or lies on the boundary, or if two fractures overlap.
+/// oriented (see split()) after the rotation. Throws an Error for inconsistent parameters, for fractures that overlap,
+/// lie on the boundary, or are not on a mesh plane.
 GlobalMesh make_box(const BoxMesh& box);
 
 }  // namespace sprekk::mesh

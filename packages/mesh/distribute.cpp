@@ -114,8 +114,8 @@ class Distributor {
     return result;
   }
 
-  /// Local cells: cells that share a node with an owned cell (including owned cells), cells opposite to owned fracture
-  /// faces, and minus cells of faces that share a ridge with an owned face.
+  /// Returns the local cells: cells that share a node with an owned cell, thus also owned cells, and the further ghost
+  /// cells documented at Mesh.
   std::vector<bool> local_cells() const {
     const auto is_near = nodes_of([&](GlobalIndex cell) { return part_[cell] == rank_; });
     std::vector<bool> result(global_.n_cells(), false);

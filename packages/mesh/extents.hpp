@@ -13,8 +13,8 @@ Vector domain_extents(const Mesh& mesh);
 /// Largest size of the bounding box of the domain, m. Collective.
 Real largest_extent(const Mesh& mesh);
 
-/// Face area of a typical cell, m^2 (2D: length, m): (V/n)^((d-1)/d), with V the volume of the bounding box of the
-/// domain and n the number of cells. Collective.
+/// Face area of a typical cell, m^2 (2D: length, m): (V/n)^((d-1)/d). V is the volume of the bounding box of the
+/// domain, n the number of cells. Collective.
 Real typical_face_area(const Mesh& mesh);
 
 /// Size of the bounding box of each fracture in each direction, m. Collective.

@@ -21,6 +21,7 @@ inline Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/// Coordinates of a node, m.
 Vector point(const GlobalMesh& mesh, GlobalIndex node);
 
 /// Nodes of one face of a cell, in the order of face_nodes(shape); unused entries are -1.
@@ -55,6 +56,7 @@ struct FaceCorners {
   int n;
 };
 
+/// Corners of one face of a local cell, in the order of face_nodes().
 FaceCorners face_corners(const Mesh& mesh, LocalIndex cell, int local_face);
 
 /// Area times unit normal of a face, m^2 (2D: length times normal, m). The vector points outward if the corners have

@@ -27,6 +27,7 @@ struct Subdivision {
   int n_parts() const { return static_cast<int>(of_face.front().size()); }
 };
 
+/// Returns the subdivision of a cell; for shapes of order 2 that of the cell of order 1.
 Subdivision subdivision(Shape shape);
 
 }  // namespace sprekk::mesh

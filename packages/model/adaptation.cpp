@@ -105,9 +105,9 @@ void Adaptation::prepare(Scene& scene, RCP<const Comm> comm) {
   scene.time = *time_;
 }
 
-/// Computes the spatial error e_k. If errors decrease by the factor r = E_k / E_(k-1) of their estimates E, the change
-/// of the value is e_(k-1) - e_k, thus e_k = r / (1 - r) times the change. r is limited to [1/3, 2/3]. A decrease of
-/// the estimate below 2^-order in one refinement may be accidental and is not accepted immediately.
+/// Computes the spatial error e_k. Assumption: errors e decrease by the factor r = E_k / E_(k-1) of their estimates E.
+/// The value then changes by e_(k-1) - e_k, so e_k is r / (1 - r) times the change. r is limited to [1/3, 2/3]. A
+/// decrease of the estimate below 2^-order in one refinement may be accidental and is not accepted immediately.
 Real Adaptation::space_error(const std::string& name) const {
   const auto& now = runs_.back().estimates.at(name);
   if (runs_.size() < 2) return now.error;

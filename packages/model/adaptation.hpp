@@ -30,7 +30,8 @@ class Adaptation {
   void prepare(Scene& scene, RCP<const Comm> comm);
 
   /// Evaluates a completed run. The spatial error of a quantity is the maximum of its estimate and of bounds from the
-  /// previous mesh, such as the change of the value. Tolerances can be met from the second mesh on.
+  /// previous mesh. One bound is proportional to the change of the value. Tolerances can be met from the second mesh
+  /// on.
   void judge(const Model& model, const Goals& goals);
   /// Returns true if another run is needed; otherwise why() contains the reason.
   bool goes_on() const { return why_.empty(); }

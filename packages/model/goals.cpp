@@ -124,8 +124,8 @@ Goals::Estimate Goals::of_boundary(const Quantity& quantity, const ErrorEstimate
 }
 
 /// Returns for each owned cell a bound of its contribution to the error of the quantity, up to a factor. For mean jumps
-/// it is the product of the energy norms of the stress error and of the stress error for unit forces at the faces. For
-/// other quantities it is the square of the first norm.
+/// it is the product of two energy norms: of the stress error, and of the stress error under unit forces at the faces.
+/// For other quantities it is the square of the first norm.
 std::vector<Real> Goals::energies(const Quantity& quantity, const std::vector<OutputField>& outputs,
                                   const ErrorEstimate& estimate, ErrorEstimator& estimator) const {
   const bool is_slip = quantity.what == "slip";

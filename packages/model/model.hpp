@@ -73,7 +73,7 @@ class Model {
   void restore(const io::Checkpoint& checkpoint);
 
   /// Returns one line per implausible input: conditions without effect, ignored columns, warnings of each physics,
-  /// steps that skip knots of a table.
+  /// steps that skip knots of a table, stages after the end.
   std::vector<std::string> warnings() const;
 
   Real time() const { return time_; }

@@ -9,8 +9,8 @@
 namespace sprekk::model {
 
 /// Loading of the point. Each component is controlled by the jump w, the traction lambda, or a column of rock of
-/// stiffness k. The end of the column is displaced by d: lambda = k (d - w). With an initial traction lambda_0 and its
-/// jump w_0, jumps are relative to w_0: w = w_0 + path, lambda = lambda_0 + k (d - (w - w_0)). A zero path is then a
+/// stiffness k. The end of the column is displaced by d: lambda = k (d - w). With an initial traction lambda_0, jumps
+/// are relative to its jump w_0. Then w = w_0 + path, and lambda = lambda_0 + k (d - (w - w_0)). A zero path is then a
 /// test at constant normal stiffness (column) or constant volume (jump).
 struct PointPath {
   std::string material;                                 ///< name of a joint material
@@ -39,6 +39,8 @@ struct PointScene {
   void check_material(base::Section& section, const std::string& place, const PointPath& path);
 };
 
+/// Reads a point scene from an XML file and applies overrides "Path.To.Entry=value". Throws one Error with a line for
+/// each mistake. Collective.
 PointScene read_point_scene(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides = {});
 /// Builds a point scene from entries like those of a file; `origin` is the prefix of messages. Not collective.
 PointScene point_scene_of(Teuchos::ParameterList entries, const std::string& origin,
@@ -64,9 +66,9 @@ struct PointCurve {
 
 /// Returns true for a model with exactly one flux error estimator and without mechanics; shares() requires it. Stored
 /// data. Integrates the path with implicit Euler, one state per step. A step has no state if the prescribed values
-/// admit none: a jump impossible for a rigid joint, or a shear traction above the friction bound. If the bound
-/// decreases with slip faster than the loading system unloads, slip jumps. The step is then divided and has states just
-/// before and after the jump.
+/// admit none. Examples are a jump impossible for a rigid joint, and a shear traction above the friction bound. If the
+/// bound decreases with slip faster than the loading system unloads, slip jumps. The step is then divided and has
+/// states just before and after the jump.
 std::vector<PointCurve> drive_points(const PointScene& scene);
 
 /// Returns the states of a scene with one point, at the ends of steps and at jumps. Throws an Error if a step has no

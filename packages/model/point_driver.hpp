@@ -294,9 +294,9 @@ class PointDriver {
 
   /// Projection constants (Pa/m) derived from the controls.
   /// * A column is in series with the joint: its stiffness.
-  /// * A prescribed jump alone determines sliding or opening: |c_t (w - p_old)| is much larger than any traction, and
-  ///   c_n times the distance of the sides much larger than the bond strength.
-  /// * A prescribed traction alone determines compression: c_n times the distance of the sides is much smaller than
+  /// * A prescribed jump alone determines sliding or opening. |c_t (w - p_old)| is then much larger than any traction,
+  ///   and c_n times the distance of the sides much larger than the bond strength.
+  /// * A prescribed traction alone determines compression. c_n times the distance of the sides is much smaller than
   ///   this traction.
   laws::Augmentation augmentation_of_controls(Real c) const {
     constexpr Real far = 1e3;

@@ -19,8 +19,8 @@ using Shares = std::vector<Share>;
 /// Returns the shares for values at points. Nodal outputs are interpolated with the shape functions of the cell at the
 /// point. Cell outputs are the value of this cell, face outputs that of the nearest fracture face. Among several cells
 /// or faces, the lowest number is used, so values are independent of the distribution. The shares of a point sum to 1
-/// over all ranks. Throws an Error if a point is outside the mesh or, for fracture faces, farther than 1e-6 of the
-/// largest extent of the domain from all fractures. Collective.
+/// over all ranks. Throws an Error for points outside the mesh. For fracture faces, it also throws if the distance to
+/// all fractures exceeds 1e-6 of the largest extent of the domain. Collective.
 std::vector<Shares> shares_at(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<mesh::Vector>& points);
 
 /// Returns the shares for integrals of outputs on nodes or cells over a boundary, an index into boundary_names. Local.

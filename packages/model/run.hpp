@@ -41,8 +41,8 @@ enum class Ending {
 /// repeated on finer meshes; each run replaces the previous results. The log is written to log.txt line by line,
 /// warnings also to the standard error. A step that does not converge is reported; the results of earlier steps remain.
 /// An interrupted run ends after its last complete step, with a checkpoint if the scene has checkpoints. Throws an
-/// Error, the same on every rank, for invalid input, files that cannot be written, or a directory used by another run,
-/// which remains unchanged. Collective.
+/// Error, the same on every rank, for invalid input and for files that cannot be written. A directory used by another
+/// run is an error too and remains unchanged. Collective.
 Ending run(const RunOptions& options, RCP<const Comm> comm);
 
 /// Reads and checks a scene and builds its mesh and equation system, without computation. Throws like run().

@@ -38,7 +38,8 @@ class Steps {
   /// Takes the next step; rejected attempts are reverted. The report shows whether the step failed or was stopped.
   StepTaken take();
 
-  /// Sets the stage of a model that will be restored to time t. If a stage begins at t, `begun` selects it.
+  /// Applies the stages before t to a model that will be restored to time t. With `begun`, it also applies the stage
+  /// that begins at t.
   void go_to_stage_at(Real t, bool begun);
   /// Returns true if the present stage begins at the present time and has no step yet.
   bool is_at_begin_of_stage() const;
