@@ -74,8 +74,7 @@ std::array<Real, 2> CellGeometry::scaled_jacobian(const GlobalMesh& mesh, Global
       return e.from == std::min(from, to) && e.to == std::max(from, to);
     });
     const Vector chord = x(to) - x(from), start = 4.0 * x(edge->middle) - 3.0 * x(from) - x(to);
-    return norm(start) > 1e-6 * norm(chord) ? start
-                                            : chord;  // with a quarter-point node near `from`, the tangent vanishes
+    return norm(start) > 1e-6 * norm(chord) ? start : chord;  // the tangent at a quarter-point node is 0
   };
   const auto unit = [](const Vector& v) { return norm(v) > 0 ? (1 / norm(v)) * v : Vector{}; };
   const Real regular = !is_simplex(shape_) ? 1 : dim == 2 ? 2 / std::sqrt(3.0) : std::sqrt(2.0);

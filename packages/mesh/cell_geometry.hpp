@@ -8,8 +8,8 @@
 
 namespace sprekk::mesh {
 
-/// Returns for each node of a cell the corners whose mean it is in a cell with straight edges. The corners are a bit
-/// set: bit k is corner k.
+/// Returns for each node of a cell the corners whose mean is this node in a cell with straight edges. The corners are a
+/// bit set: bit k is corner k.
 std::vector<unsigned> corners_of_nodes(Shape shape);
 
 /// Returns the node permutation that mirrors a cell: node k of the mirrored cell is node [k] of the cell.

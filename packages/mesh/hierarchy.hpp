@@ -1,5 +1,6 @@
-// Mixed-dimensional domain: bulk (dimension d), fractures (d - 1), their intersections (d - 2), and in 3D the points (d
-// - 3) where intersections meet. It contains the interfaces between neighbours and the projections across them.
+// Mixed-dimensional domain: bulk of dimension d, fractures (d - 1), intersections of fractures (d - 2), and in 3D
+// common points of intersections (d - 3). It contains the interfaces between neighbours and the projections across
+// them.
 #pragma once
 
 #include <array>
@@ -74,8 +75,7 @@ struct Hierarchy {
   std::vector<Subdomain> subdomains;
   std::vector<Interface> interfaces;  ///< by lower-dimensional subdomain, then by higher-dimensional one, then by side
   std::vector<Ridge> ridges;          ///< of all fracture faces
-  std::vector<std::vector<GlobalIndex>>
-      tips;  ///< [fracture] ridges with one face only, not on the boundary of the domain
+  std::vector<std::vector<GlobalIndex>> tips;  ///< [fracture] ridges with one face, not on the domain boundary
 
   /// Number of subdomains of the given dimension.
   int count(int dimension) const;

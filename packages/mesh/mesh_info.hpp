@@ -27,9 +27,8 @@ struct MeshInfo {
   GlobalIndex n_tip_nodes = 0;            ///< corners on tips
   GlobalIndex n_intersection_points = 0;  ///< 2D: n_intersections; 3D: corners of more than two intersection edges
 
-  Real shortest_edge = 0, mean_edge = 0,
-       longest_edge = 0;        ///< between corners, m; the mean counts an edge once per cell
-  Real largest_edge_ratio = 0;  ///< longest over shortest edge of one cell
+  Real shortest_edge = 0, mean_edge = 0, longest_edge = 0;  ///< m; the mean counts an edge once per cell
+  Real largest_edge_ratio = 0;                              ///< longest over shortest edge of one cell
   GlobalIndex cell_of_largest_edge_ratio = 0;
   Real smallest_scaled_jacobian = 0;  ///< see CellGeometry
   GlobalIndex cell_of_smallest_scaled_jacobian = 0;

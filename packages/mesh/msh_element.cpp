@@ -19,7 +19,7 @@ constexpr MshElementType types[] = {{1, "2-node line", 1, 2, 2, {}},
                                     {12, "27-node hexahedron", 3, 8, 27, Shape::hexahedron27},
                                     {15, "point", 0, 1, 1, {}}};
 
-/// Returns for each node of the gmsh element after the corners the corners whose mean it is.
+/// Returns for each further node of the gmsh element the set of corners whose mean is this node.
 std::vector<std::vector<int>> msh_corner_sets(Shape shape) {
   switch (shape) {
     case Shape::triangle6:

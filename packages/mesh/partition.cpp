@@ -61,9 +61,8 @@ struct Tolerances {
 
 /// Partitions the graph with METIS. Without tolerances, only the cells are balanced, as well as METIS can.
 std::vector<int> metis_partition(Graph& graph, int n_parts, idx_t seed, const std::optional<Tolerances>& tolerances) {
-  const bool recursive = n_parts <= 8;  // recommended in the manual of METIS
-  const double n_levels =
-      recursive ? std::ceil(std::log2(n_parts)) : 1;  // levels of bisections, whose imbalances multiply
+  const bool recursive = n_parts <= 8;                                    // recommended in the manual of METIS
+  const double n_levels = recursive ? std::ceil(std::log2(n_parts)) : 1;  // of bisections; imbalances multiply
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = seed;

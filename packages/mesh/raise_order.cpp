@@ -19,8 +19,8 @@ struct Hash {
   }
 };
 
-/// Returns for each added node the corners whose mean it is. The result is derived from the node lists of faces, so
-/// only one table defines the numbers.
+/// Returns for each added node the corners whose mean is this node. The result is derived from the node lists of faces,
+/// so only one table defines the numbers.
 std::vector<std::vector<int>> parents(Shape shape) {
   const int n_added = n_nodes(shape) - n_corners(shape), n_around = n_face_corners(shape);
   std::vector<std::vector<int>> result(n_added);

@@ -56,8 +56,7 @@ class Divider {
   /// Part of a side of a fracture face at corner k of side minus, or the inner part.
   const Part& part(const Mesh::FractureFace& face, int side, int k) const {
     int corner = k;
-    if (k < n_face_corners(shape_) &&
-        face.cell[side] >= 0)  // without the cell only the child's number is used; it is equal at all corners
+    if (k < n_face_corners(shape_) && face.cell[side] >= 0)  // else only the child's number is used
       for (corner = 0; node(face.cell[side], face_nodes(shape_)[face.local_face[side]][corner]) != face.nodes[side][k];)
         SPREKK_CHECK(++corner < n_face_corners(shape_), "mesh: a corner of fracture face {} is none of its cell",
                      face.id);

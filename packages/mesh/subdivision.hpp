@@ -20,8 +20,7 @@ struct Subdivision {
   };
 
   std::vector<std::array<int, 8>> children;  ///< [child][corner] node of the cell of order 2; -1 unused
-  std::vector<std::vector<Part>>
-      of_face;  ///< [face][part]; part k contains corner k of the face, a further part is inside
+  std::vector<std::vector<Part>> of_face;    ///< [face][part] part k has corner k of the face, the next one none
 
   int n_children() const { return static_cast<int>(children.size()); }
   int n_parts() const { return static_cast<int>(of_face.front().size()); }

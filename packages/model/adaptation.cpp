@@ -29,8 +29,7 @@ std::string percent(Real part, Real whole) {
 
 std::string Adaptation::Verdict::line() const {
   const auto size = [](Real x) { return std::isfinite(x) ? fmt::format("{:.2g}", x) : std::string("unknown"); };
-  const bool known =
-      std::isfinite(error) && error > 0 && value != 0;  // two digits of the error, and as many decimals of the value
+  const bool known = std::isfinite(error) && error > 0 && value != 0;  // two digits of the error
   const int digits = known ? static_cast<int>(std::ceil(std::log10(std::abs(value) / error))) + 2 : 4;
   return fmt::format("{}: {:.{}g} {} +- {} ({}, asked {}), space {}, time {}", title, value, std::clamp(digits, 4, 12),
                      unit, size(error), percent(error, value), percent(asked, value), size(space), size(time));

@@ -26,9 +26,8 @@ struct Reduction {
 };
 
 struct FactorOfSafety {
-  Real least;  ///< largest factor with an equilibrium
-  std::optional<Real>
-      lost;  ///< least factor without one, at most (1 + tolerance) least; absent: `most` has an equilibrium
+  Real least;                         ///< largest factor with an equilibrium
+  std::optional<Real> lost;           ///< least without one, <= (1 + tolerance) least; absent: `most` has one
   std::vector<Reduction> reductions;  ///< in the order of the trials
   std::vector<std::string> states;    ///< digest() of the state at `least`
 };

@@ -174,8 +174,7 @@ json described_singles(const mesh::Mesh& mesh) {
       n[c] = normal[3 * k + c] / size;
       one["normal"].push_back(n[c]);
     }
-    const Real up =
-        n[2] < 0 ? -1 : 1;  // the plane dips towards the horizontal part of its upward normal, right of the strike
+    const Real up = n[2] < 0 ? -1 : 1;  // the plane dips along its upward normal, right of the strike
     if (mesh.dim() == 2)
       one["strike"] = degrees(n[1], -n[0], 180);
     else

@@ -15,16 +15,14 @@ bool contains(const std::vector<Real>& increasing, Real t) {
 
 solve::StepControlOptions options_of(const Time& time, Real end, bool rates) {
   const Real all = end - time.start;
-  const Real first =
-      rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.03;  // relative to the whole time
+  const Real first = rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.03;  // of the total
   const Real largest = time.largest_step.value_or(all);
-  return {
-      .tolerance = time.tolerance,
-      .iterations = time.newton_iterations,
-      .first = std::min(time.first_step.value_or(first * all), largest),
-      .smallest = std::min(time.smallest_step.value_or(1e-9 * all), largest),
-      .largest = largest,
-      .most_growth = time.scheme == "BDF2" ? 2.28 : 3};  // a step may be extended by a factor of 1.05 to meet a time
+  return {.tolerance = time.tolerance,
+          .iterations = time.newton_iterations,
+          .first = std::min(time.first_step.value_or(first * all), largest),
+          .smallest = std::min(time.smallest_step.value_or(1e-9 * all), largest),
+          .largest = largest,
+          .most_growth = time.scheme == "BDF2" ? 2.28 : 3};  // steps may be 1.05 times longer to meet a time
 }
 
 }  // namespace
