@@ -1,0 +1,158 @@
+"""Runs the scenes of the gallery and draws one picture of each.
+
+The data are docs/gallery/scenes.csv (scene, picture, processor time in s) and one WebP file per scene. Scenes that need
+more than LIMIT seconds of processor time have no picture and no time. The site makes a page of them, see pages.py.
+"""
+import csv
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+LIMIT = 180  # s of processor time of a run
+WIDTH = 900  # pixels of a picture
+COLUMNS = ("scene", "picture", "seconds")
+
+# Picture of `sprekk plot` by topic or scene; the first that the run has.
+PICTURES = {
+    "accuracy": "maps flow bulk",
+    "contact": "bulk",
+    "contact/cycles_2d": "loops",
+    "contact/damage_cycles_2d": "loops",
+    "contact/damage_turns_3d": "loops",
+    "contact/turns_3d": "loops",
+    "flow": "flow",
+    "gmsh": "maps bulk",
+    "heat": "temperature",
+    "networks": "maps bulk",
+    "performance": "flow bulk",
+    "poro": "maps flow bulk",
+    "seed": "bulk",
+    "slopes": "bulk",
+    "stages": "bulk",
+    "thm": "temperature",
+    "tutorial": "maps",
+}
+
+
+class GalleryError(Exception):
+    pass
+
+
+def scenes(root):
+    """Paths of all scenes outside verification, relative to the root."""
+    paths = sorted((root / "xml").glob("*/*.xml"))
+    return [path.relative_to(root) for path in paths if path.parent.name != "verification"]
+
+
+def purpose(text):
+    """The comment at the start of a scene, on one line; None without one."""
+    comment = re.match(r"\s*<!--(.*?)-->", text, re.DOTALL)
+    return " ".join(comment[1].split()) if comment else None
+
+
+def command(scene):
+    verb = "point" if scene.parts[1] == "point" else "run"
+    return f"./sprekk {verb} {scene}" + (f" > {scene.stem}.csv" if verb == "point" else "")
+
+
+def read(folder):
+    """{scene: row} of scenes.csv"""
+    if not (folder / "scenes.csv").exists():
+        return {}
+    with open(folder / "scenes.csv", newline="") as file:
+        return {row["scene"]: row for row in csv.DictReader(file)}
+
+
+def write(folder, rows):
+    with open(folder / "scenes.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows[scene] for scene in sorted(rows))
+
+
+def processor_time():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def limited():
+    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT + 5))
+
+
+def compute(root, scene, results):
+    """Runs a scene: (path for `sprekk plot`, processor time); (None, None) above the limit."""
+    program, begin = root / "sprekk", processor_time()
+    if scene.parts[1] == "point":
+        words, made = [program, "point", scene], results.with_name(results.name + ".csv")
+    else:
+        words, made = [program, "run", scene, "--output", results, "--quiet"], results
+    done = subprocess.run(words, cwd=root, capture_output=True, text=True, preexec_fn=limited)
+    seconds = processor_time() - begin
+    if seconds >= LIMIT:
+        return None, None
+    if done.returncode:
+        raise GalleryError(f"{scene}: exit status {done.returncode}: {done.stderr.strip()[-500:]}")
+    if made != results:
+        made.write_text(done.stdout)
+    return made, seconds
+
+
+def draw(root, scene, made, target, results):
+    """Writes the picture of a scene; results is the folder of all its pictures."""
+    from PIL import Image
+    done = subprocess.run([root / "sprekk", "plot", made, "--output", results, "--dpi", "110"], cwd=root,
+                          capture_output=True, text=True)
+    if done.returncode:
+        raise GalleryError(f"{scene}: plot: {done.stderr.strip()[-500:]}")
+    topic = scene.parts[1]
+    wanted = scene.stem if topic == "point" else PICTURES.get(f"{topic}/{scene.stem}", PICTURES.get(topic, "bulk"))
+    names = wanted.split()
+    found = [results / f"{name}.png" for name in names if (results / f"{name}.png").exists()]
+    if not found:
+        raise GalleryError(f"{scene}: plot made none of the pictures {', '.join(names)}")
+    image = Image.open(found[0]).convert("RGB")
+    image.thumbnail((WIDTH, 2 * WIDTH))
+    image.save(target, quality=80, method=6)
+
+
+def make(root, wanted):
+    """Runs the wanted scenes, or all, and rewrites their rows and pictures."""
+    folder, known = root / "docs/gallery", scenes(root)
+    unknown = [name for name in wanted if Path(name) not in known]
+    if unknown:
+        allowed = "xml/TOPIC/NAME.xml outside xml/verification"
+        raise GalleryError(f"{unknown[0]}: is no scene of the gallery; allowed: {allowed}")
+    folder.mkdir(exist_ok=True)
+    rows = {name: row for name, row in read(folder).items() if Path(name) in known}
+    failed = []
+    with tempfile.TemporaryDirectory() as temporary:
+        for scene in [Path(name) for name in wanted] or known:
+            place = Path(temporary) / f"{scene.parts[1]}_{scene.stem}"
+            place.mkdir(parents=True, exist_ok=True)
+            target = folder / f"{place.name}.webp"
+            try:
+                made, seconds = compute(root, scene, place / scene.stem)
+                if made:
+                    draw(root, scene, made, target, place)
+                else:
+                    target.unlink(missing_ok=True)
+            except GalleryError as error:
+                failed.append(str(error))
+                print(f"sprekk docs: {error}", file=sys.stderr, flush=True)
+                continue
+            finally:
+                shutil.rmtree(place / scene.stem, ignore_errors=True)
+            rows[str(scene)] = {"scene": scene, "picture": target.name if made else "",
+                                "seconds": f"{seconds:.2g}" if made else ""}
+            write(folder, rows)
+            print(f"{scene}: " + (f"{seconds:.2g} s" if made else f"more than {LIMIT} s"), flush=True)
+    pictures = {row["picture"] for row in rows.values()}
+    for path in folder.glob("*.webp"):
+        if path.name not in pictures:
+            path.unlink()
+    if failed:
+        raise GalleryError(f"{len(failed)} scenes failed")
