@@ -4,6 +4,8 @@ The data are docs/gallery/scenes.csv (scene, picture, processor time in s) and o
 more than LIMIT seconds of processor time have no picture and no time. The site makes a page of them, see pages.py.
 """
 import csv
+import importlib.util
+import io
 import re
 import resource
 import shutil
@@ -21,8 +23,12 @@ PICTURES = {
     "accuracy": "maps flow bulk",
     "contact": "bulk",
     "contact/cycles_2d": "loops",
+    "contact/all_change_2d": "loops",
+    "contact/all_change_3d": "loops",
     "contact/damage_cycles_2d": "loops",
     "contact/damage_turns_3d": "loops",
+    "contact/snap_back_2d": "loops",
+    "contact/thin_layers_2d": "loops bulk",
     "contact/turns_3d": "loops",
     "flow": "flow",
     "gmsh": "maps bulk",
@@ -101,20 +107,37 @@ def compute(root, scene, results):
     return made, seconds
 
 
-def draw(root, scene, made, target, results):
-    """Writes the picture of a scene; results is the folder of all its pictures."""
+def plots(root):
+    """The program of `sprekk plot` as a module."""
+    sys.path.append(str(root / "apps/plot"))
+    spec = importlib.util.spec_from_file_location("sprekk_plot", root / "apps/plot/__main__.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def draw(plot, scene, made, target):
+    """Writes the picture of a scene; others are not drawn."""
     from PIL import Image
-    done = subprocess.run([root / "sprekk", "plot", made, "--output", results, "--dpi", "110"], cwd=root,
-                          capture_output=True, text=True)
-    if done.returncode:
-        raise GalleryError(f"{scene}: plot: {done.stderr.strip()[-500:]}")
+    from style import plt, save
     topic = scene.parts[1]
     wanted = scene.stem if topic == "point" else PICTURES.get(f"{topic}/{scene.stem}", PICTURES.get(topic, "bulk"))
-    names = wanted.split()
-    found = [results / f"{name}.png" for name in names if (results / f"{name}.png").exists()]
-    if not found:
-        raise GalleryError(f"{scene}: plot made none of the pictures {', '.join(names)}")
-    image = Image.open(found[0]).convert("RGB")
+    names, found = wanted.split(), {}
+    try:
+        for name, figure in plot.of_run(made, plot.arguments([str(made)])) if made.is_dir() else plot.of_csv(made):
+            found[name] = figure
+            if name == names[0]:
+                break
+        figure = next((found[name] for name in names if name in found), None)
+        if figure is None:
+            raise GalleryError(f"{scene}: has none of the pictures {', '.join(names)}")
+        picture = io.BytesIO()
+        save(figure, picture, 110)
+    except plot.PlotError as error:
+        raise GalleryError(f"{scene}: plot: {error}") from None
+    finally:
+        plt.close("all")
+    image = Image.open(picture).convert("RGB")
     image.thumbnail((WIDTH, 2 * WIDTH))
     image.save(target, quality=80, method=6)
 
@@ -128,16 +151,14 @@ def make(root, wanted):
         raise GalleryError(f"{unknown[0]}: is no scene of the gallery; allowed: {allowed}")
     folder.mkdir(exist_ok=True)
     rows = {name: row for name, row in read(folder).items() if Path(name) in known}
-    failed = []
+    failed, plot = [], plots(root)
     with tempfile.TemporaryDirectory() as temporary:
         for scene in [Path(name) for name in wanted] or known:
-            place = Path(temporary) / f"{scene.parts[1]}_{scene.stem}"
-            place.mkdir(parents=True, exist_ok=True)
-            target = folder / f"{place.name}.webp"
+            target = folder / f"{scene.parts[1]}_{scene.stem}.webp"
             try:
-                made, seconds = compute(root, scene, place / scene.stem)
+                made, seconds = compute(root, scene, Path(temporary) / scene.stem)
                 if made:
-                    draw(root, scene, made, target, place)
+                    draw(plot, scene, made, target)
                 else:
                     target.unlink(missing_ok=True)
             except GalleryError as error:
@@ -145,11 +166,11 @@ def make(root, wanted):
                 print(f"sprekk docs: {error}", file=sys.stderr, flush=True)
                 continue
             finally:
-                shutil.rmtree(place / scene.stem, ignore_errors=True)
+                shutil.rmtree(Path(temporary) / scene.stem, ignore_errors=True)
             rows[str(scene)] = {"scene": scene, "picture": target.name if made else "",
-                                "seconds": f"{seconds:.2g}" if made else ""}
+                                "seconds": f"{float(f'{seconds:.2g}'):g}" if made else ""}
             write(folder, rows)
-            print(f"{scene}: " + (f"{seconds:.2g} s" if made else f"more than {LIMIT} s"), flush=True)
+            print(f"{scene}: " + (f"{seconds:.1f} s" if made else f"more than {LIMIT} s"), flush=True)
     pictures = {row["picture"] for row in rows.values()}
     for path in folder.glob("*.webp"):
         if path.name not in pictures:

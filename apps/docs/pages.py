@@ -67,7 +67,8 @@ def of_gallery(root):
         if row:
             time = f"{row['seconds']} s" if row["seconds"] else f"more than {gallery.LIMIT} s"
         if row and row["picture"]:
-            picture = f"![{scene.stem}](docs/gallery/{row['picture']}){{ loading=lazy }}\n\n"
+            file = f"docs/gallery/{row['picture']}"
+            picture = f"[![{scene.stem}]({file}){{ loading=lazy }}]({file})\n\n"
         text = html.escape(gallery.purpose((root / scene).read_text()) or "", quote=False)
         parts.append(f"<div markdown>\n\n### [{scene.stem}]({scene})\n\n{picture}{text}\n\nRun time: {time}\n\n"
                      f"```sh\n{gallery.command(scene)}\n```\n\n</div>\n")
