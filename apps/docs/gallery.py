@@ -20,7 +20,8 @@ COLUMNS = ("scene", "picture", "seconds")
 
 # Picture of `sprekk plot` by topic or scene; the first that the run has.
 PICTURES = {
-    "accuracy": "maps flow bulk",
+    "accuracy": "flow bulk",
+    "accuracy/doublet_2d": "temperature",
     "contact": "bulk",
     "contact/cycles_2d": "loops",
     "contact/all_change_2d": "loops",
@@ -31,11 +32,17 @@ PICTURES = {
     "contact/thin_layers_2d": "loops bulk",
     "contact/turns_3d": "loops",
     "flow": "flow",
-    "gmsh": "maps bulk",
+    "gmsh": "bulk",
     "heat": "temperature",
     "networks": "maps bulk",
+    "networks/biaxial_2d": "bulk",
+    "networks/great_cell_2d": "bulk",
+    "networks/triaxial_3d": "bulk",
     "performance": "flow bulk",
     "poro": "maps flow bulk",
+    "poro/injection_days_2d": "series",
+    "poro/injection_shear_2d": "series",
+    "poro/shut_in_2d": "series",
     "seed": "bulk",
     "slopes": "bulk",
     "stages": "bulk",
