@@ -76,7 +76,7 @@ function(sprekk_package name)
   target_link_libraries(sprekk_${name} ${scope} sprekk_trilinos fmt::fmt ${uses} ${ARG_LINKS})
   target_compile_features(sprekk_${name} ${scope} cxx_std_20)
   set_target_properties(sprekk_${name} PROPERTIES EXPORT_NAME ${name})
-  install(TARGETS sprekk_${name} EXPORT Sprekk)
+  install(TARGETS sprekk_${name} EXPORT Sprekk COMPONENT development)
 endfunction()
 
 # Environment of tests. Open MPI may run as root; it uses the memory of this machine at once instead of looking for

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import program
-from program import ROOT, ProgramTest, main
+from program import ROOT, TIME_LIMIT, ProgramTest, main
 
 PUSH = "xml/seed/push_2d.xml"
 STUBS = {"dpkg-query": 'for package in "${@:4}"; do printf "installed:%s " "$package"; done',
@@ -39,8 +39,8 @@ class Launcher(ProgramTest):
         self.surroundings = {"cwd": self.folder, "env": {**os.environ, "PATH": path}, "text": True,
                              "stdin": subprocess.DEVNULL}
 
-    def launch(self, *words, expect=0):
-        done = subprocess.run(["timeout", str(program.TIME_LIMIT), "./sprekk", *words], capture_output=True,
+    def launch(self, *words, expect=0, launcher="./sprekk"):
+        done = subprocess.run(["timeout", str(TIME_LIMIT), launcher, *words], capture_output=True,
                               **self.surroundings)
         self.assertEqual(done.returncode, expect, f"{words}\n{done.stdout}{done.stderr}")
         return done.stdout, done.stderr
@@ -116,6 +116,26 @@ class Launcher(ProgramTest):
             if command not in ("-h", "help"):
                 self.assertIn(command, out)
         self.assertEqual(self.launch("run", "--help")[0], out)
+
+    def test_installed(self):
+        """Without CMakeLists.txt the launcher neither builds nor installs; it is called through a link, anywhere."""
+        home = self.folder / "prefix/lib/sprekk"
+        for link, to in ((home / "apps/sprekk/sprekk", program.PROGRAM), (self.folder / "prefix/bin/sprekk", "../lib/sprekk/sprekk")):
+            link.parent.mkdir(parents=True)
+            link.symlink_to(to)
+        shutil.copy(ROOT / "sprekk", home)
+        (self.folder / "stubs/ninja").write_text("exit 1")
+        (self.folder / "stubs/dpkg-query").write_text("exit 1")
+        self.launch("check", PUSH, launcher="prefix/bin/sprekk")
+        self.launch("run", PUSH, "--ranks", "2", "--output", "out", launcher="prefix/bin/sprekk")
+        self.assertEqual(self.results()["ranks"], 2)
+        self.assertEqual(self.launch("--version", launcher="prefix/bin/sprekk")[0], self.call("--version")[0])
+        self.assertNotRegex(self.launch("--help", launcher="prefix/bin/sprekk")[0], "[.]/sprekk|sprekk test")
+        self.assertRegex(self.launch("plot", "out", expect=1, launcher="prefix/bin/sprekk")[1],
+                         "^sprekk: packages are missing; install them with: sudo apt-get install .*python3-vtk9\n$")
+        for command in ("build", "test", "perf", "fuzz", "package", "docs"):
+            self.assertEqual(self.launch(command, expect=1, launcher="prefix/bin/sprekk"),
+                             ("", f"sprekk: {command} requires the source tree of Sprekk\n"))
 
     def test_perf_runs_a_measurement(self):
         measurement = self.folder / "perf/greet/greet.py"

@@ -1,4 +1,5 @@
 """Fracture networks: from tables of traces, and their meshes."""
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -47,15 +48,24 @@ def with_mesh(scene, comm=MPI.COMM_WORLD):
     return meshed
 
 
-def make_mesh(scene, folder):
+def mesh_command():
+    """The command that generates meshes: of the source tree around this package, else of the installed `sprekk`."""
     program = Path(_sprekk.__file__).resolve().parents[2] / "apps/sprekk/sprekk"
     maker = Path(__file__).resolve().parents[2] / "mesh"
-    if not (program.exists() and maker.exists()):
-        raise _sprekk.Error(f'{scene.name}: meshes of networks are made by `./sprekk python` in the source tree; elsewhere '
-                            'make one with `./sprekk mesh`, and name it by "path" of "Mesh file"')
+    if program.exists() and maker.exists():
+        return [sys.executable, "-B", str(maker), "--program", str(program)]
+    installed = shutil.which("sprekk")
+    return [installed, "mesh"] if installed else None
+
+
+def make_mesh(scene, folder):
+    command = mesh_command()
+    if not command:
+        raise _sprekk.Error(f'{scene.name}: the mesh of a network requires the command `sprekk`, which is not on the path; '
+                            'generate the mesh with `sprekk mesh`, and set "path" of "Mesh file" to it')
     file = folder / "scene.xml"
     file.write_text(scene.to_xml(defaults=True))
-    done = subprocess.run([sys.executable, "-B", str(maker), "--program", str(program), str(file), "-o",
-                           str(folder / "network.msh"), "--quiet"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    done = subprocess.run([*command, str(file), "-o", str(folder / "network.msh"), "--quiet"], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL)
     if done.returncode:
         raise _sprekk.Error(done.stderr.strip().removeprefix("sprekk: ").replace(str(file), scene.name))
