@@ -88,15 +88,15 @@ if(CMAKE_SYSTEM_NAME STREQUAL Linux AND NOT SPREKK_SANITIZE)
   list(APPEND SPREKK_TEST_ENVIRONMENT LD_PRELOAD=$<TARGET_FILE:sprekk_patience>)  # tests of several ranks share processors
 endif()
 
-# sprekk_test(NAME COMMAND words... [PROPERTIES name value...])
-# Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, report, or perf.
+# sprekk_test(NAME COMMAND words... [CONFIGURATIONS of ctest -C] [PROPERTIES name value...])
+# Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, report, perf, or packages.
 # The time limit ends what hangs and nothing else: the longest test takes a tenth of it on two cores.
 function(sprekk_test name)
-  cmake_parse_arguments(ARG "" "" "COMMAND;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "COMMAND;CONFIGURATIONS;PROPERTIES" ${ARGN})
   if(NOT SPREKK_TEST_LABEL)
-    message(FATAL_ERROR "${name}: set SPREKK_TEST_LABEL to fast, slow, report or perf in this folder or above")
+    message(FATAL_ERROR "${name}: set SPREKK_TEST_LABEL to fast, slow, report, perf or packages in this folder or above")
   endif()
-  add_test(NAME ${name} COMMAND ${ARG_COMMAND})
+  add_test(NAME ${name} COMMAND ${ARG_COMMAND} CONFIGURATIONS ${ARG_CONFIGURATIONS})
   set_tests_properties(${name} PROPERTIES LABELS ${SPREKK_TEST_LABEL} TIMEOUT 1500
     ENVIRONMENT "${SPREKK_TEST_ENVIRONMENT}" ${ARG_PROPERTIES})
 endfunction()
