@@ -296,7 +296,7 @@ def main():
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=300, help="limit of an adaptive run")
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk")
-    parser.add_argument("--output", type=Path, default=Path("output/accuracy"))
+    parser.add_argument("--output", type=Path, default=Path("output/perf/accuracy"))
     options = parser.parse_args()
     options.binary, options.output = options.binary.resolve(), options.output.resolve()
     chosen = [case for case in cases() if not options.only or any(case.name.startswith(name) for name in options.only)]

@@ -149,6 +149,10 @@ def injection_tests(options, names):
         for model, quantity, _, measured, computed in rows:
             fitted, predicted = (relative(measured, computed, which) for which in (rising, ~rising))
             summary.append((name, model, quantity, *fitted, *predicted))
+    with open(options.output / "experiments.csv", "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(["specimen", "model", "quantity", "rising rms", "rising largest", "falling rms", "falling largest"])
+        table.writerows(summary)
     print(f"{'specimen':10}{'model':8}{'quantity':25}{'rising rms':>12}{'largest':>10}{'falling rms':>13}{'largest':>10}   (% of the range)")
     for name, model, quantity, *values in summary:
         a, b, c, d = (f"{100 * v:.1f}" if np.isfinite(v) else "-" for v in values)

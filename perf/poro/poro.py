@@ -119,10 +119,11 @@ def draw(study, rows, file):
 def measure(study, words):
     """Runs all cases on the coarsest meshes and the series of meshes, and prints; the exit status."""
     parser = linear.parser(study.name, study.text)
+    parser.add_argument("--meshes", type=int, choices=(1, 2, 3), default=3, help="meshes in the series of each type of cells (3)")
     options = parser.parse_args(words)
     runs = [(mesh, case, 0) for mesh in study.levels for case in (study.quick if options.quick else study.cases)]
     if not options.quick:
-        runs += [(mesh, "alike", level) for level in (1, 2) for mesh in study.levels]
+        runs += [(mesh, "alike", level) for level in range(1, options.meshes) for mesh in study.levels]
     chosen = linear.matching(options, runs, lambda run: f"{run[0]}, {run[1]}")
     options.output.mkdir(parents=True, exist_ok=True)
     table, rows, failed = linear.Table(COLUMNS, 36), [], []
