@@ -53,7 +53,7 @@ class Source:
                 raise SystemExit(f'{file}: the header has no line "# {name}: ..."; measure again with --save')
         self.columns, *self.rows = csv.reader(line for line in lines if not line.startswith("#"))
         targets = {key: value for name, line in self.header if name == "target" for key, value in pairs(line)}
-        self.results = [(re.match(r"(?:(\w+) )?", line)[1], key, number(value), number(targets.get(key, "")))
+        self.results = [(re.match(r"(?:([^\s=]+) )?", line)[1], key, number(value), number(targets.get(key, "")))
                         for name, line in self.header if name == "result" for key, value in pairs(line)]
 
     def __getitem__(self, name):

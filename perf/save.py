@@ -20,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = ("packages", "apps/sprekk", "xml", "cmake", "CMakeLists.txt")  # what results depend on
-RESULT = re.compile(r"(?:\w+ )?(?:\w+=\S+(?: |$))+")
+RESULT = re.compile(r"(?:[^\s=]+ )?(?:\w+=\S+(?: |$))+")
 
 
 def output_of(command):
@@ -93,7 +93,7 @@ def main(name, words):
     since = time.time() - 1
     status, results = run(name, rest, options.output)
     columns, rows = tables(options.output, since)
-    if not rows:
+    if not rows or status < 0:
         sys.exit(f"sprekk perf {name}: status {status}, and no table to save in {options.output}")
     header += [("result", line) for line in results]
     header += [("target", " ".join(f"{key}={value:g}" for key, value in targets(name).items()))]

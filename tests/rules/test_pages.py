@@ -1,12 +1,28 @@
 #!/usr/bin/env python3
-"""Tests of perf/pages.py: it fills tables, and it finds changed numbers in text, tables and CSV files."""
+"""Tests of perf/save.py, which saves tables of measurements, and of perf/pages.py, which fills the tables of pages and
+finds changed numbers in text, tables and CSV files."""
+import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-PAGES = Path(__file__).resolve().parents[2] / "perf/pages.py"
+PERF = Path(__file__).resolve().parents[2] / "perf"
+PAGES = PERF / "pages.py"
+MEASUREMENT = """
+import sys
+from pathlib import Path
+BOUNDS = {"largest": 5}
+if __name__ == "__main__":
+    folder = Path(sys.argv[sys.argv.index("--output") + 1])
+    folder.mkdir(parents=True)
+    (folder / "demo.csv").write_text("size,value\\r\\n3,0.25\\r\\n")
+    print("size value")
+    print("largest=4 failures=0")
+    sys.exit(1 if "--fail" in sys.argv else 0)
+"""
 TABLE = """# command: ./sprekk perf krylov --largest 3e4
 # commit: 0123abc
 # date: 2026-11-28
@@ -104,6 +120,48 @@ class Pages(unittest.TestCase):
     def test_csv_without_header(self):
         self.replace(self.table, "# command", "# comand")
         self.fails_with("krylov.csv: the header has no line", "command")
+
+
+class Save(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        for name in ("perf/demo", "docs/results"):
+            (self.root / name).mkdir(parents=True)
+        shutil.copy(PERF / "save.py", self.root / "perf")
+        self.measurement = self.root / "perf/demo/demo.py"
+        self.measurement.write_text(MEASUREMENT)
+
+    def save(self, *words):
+        command = [sys.executable, "-B", "perf/save.py", "demo", *words]
+        return subprocess.run(command, capture_output=True, text=True, cwd=self.root)
+
+    def test_table_with_header(self):
+        self.assertEqual(self.save("--size", "3 m", "--save").returncode, 0)
+        lines = (self.root / "docs/results/demo.csv").read_text().splitlines()
+        self.assertEqual(lines[-2:], ["size,value", "3,0.25"])
+        self.assertIn("# command: ./sprekk perf demo --size '3 m'", lines)
+        self.assertIn("# result: largest=4 failures=0", lines)
+        self.assertIn("# target: largest=5", lines)
+        for name in ("commit", "machine", "date", "load"):
+            self.assertTrue(any(line.startswith(f"# {name}: ") for line in lines), name)
+
+    def test_name_of_the_file_and_exit_status(self):
+        self.assertEqual(self.save("--fail", "--save=other").returncode, 1)
+        self.assertTrue((self.root / "docs/results/other.csv").is_file())
+
+    def test_refuses_bad_names_and_old_tables(self):
+        done = self.save("--save=../other")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('argument --save: "../other"', done.stderr)
+        self.assertEqual(self.save("--save").returncode, 0)
+        self.measurement.write_text("raise SystemExit(3)")
+        old = self.root / "output/perf/demo/demo.csv"
+        os.utime(old, (0, 0))
+        done = self.save("--save=third")
+        self.assertIn("status 3, and no table to save", done.stderr)
+        self.assertFalse((self.root / "docs/results/third.csv").exists())
 
 
 if __name__ == "__main__":
