@@ -127,6 +127,7 @@ def main():
     parser.add_argument("--output", type=Path, default=Path("output/perf/experiments"), help="folder of the table")
     parser.add_argument("--only", choices=["great_cell", *sorted(SPECIMENS)], help="one specimen")
     options = parser.parse_args()
+    options.output = options.output.resolve()  # paths of meshes in a scene are relative to the scene
     options.output.mkdir(parents=True, exist_ok=True)
     names = [options.only] if options.only else ["great_cell", *sorted(SPECIMENS)]
     near = "great_cell" not in names or great_cell.run(options)
