@@ -4,8 +4,9 @@ PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The 
 as NAME.png, those of a run into its directory: bulk.png, fractures.png, maps.png and, where the run estimated its error,
 error.png of one step, mohr.png (stress on faces beside the strength of joints), loops.png (mean traction against mean jump
 of each fracture), series.png (slip, opening, pressures and injected volume over time), magnitudes.png (of many fractures
-that slip, in 3D), a picture of each probe, and convergence.png of all steps. A run
-with flow has flow.png, with pressure and velocity, too, one with heat temperature.png, with temperature and heat flux;
+that slip, in 3D), a picture of each probe, and convergence.png of all steps. A run with flow has flow.png, with pressure and
+velocity, too, and in 2D overview.png, with slip and change of pressure; one with heat temperature.png, with temperature and
+heat flux;
 where the rock does not deform there are no others but these and the last.
 """
 import argparse
@@ -54,6 +55,7 @@ def of_run(directory, options):
     import magnitudes
     import maps
     import mohr
+    import overview
     import series
     from style import when
     content, scene = read.results(directory), read.scene(directory)
@@ -87,6 +89,8 @@ def of_run(directory, options):
         if deforms and joints and joints.GetNumberOfCells() > 0:
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
             singles = content.get("single_fractures", [])
+            if read.is_plane(rock) and (figure := overview.of_step(rock, joints, scene, title)):
+                yield "overview", figure
             yield "fractures", fractures.of_step(rock, joints, names, title, singles)
             yield "maps", maps.of_step(rock, joints, names, title, singles)
             yield "mohr", mohr.of_step(rock, joints, scene, title, content, time)

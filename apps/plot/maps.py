@@ -71,11 +71,19 @@ def draw_faces(ax, surface, colours):
     draw_polygons_3d(ax, corners + list(edges), np.concatenate([faces, ink]), np.concatenate([faces, ink]), zoom=1.05)
 
 
+def line_width(ends, outline):
+    """In points: less the denser the traces are, by their mean spacing, the area of the map over their length."""
+    size = np.ptp(outline, axis=0)
+    spacing = np.prod(size) / np.sum(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
+    return float(np.clip(25 * spacing / np.max(size), 1.8, 3))
+
+
 def draw_lines(ax, surface, outline, values, norm, colours):
     ax.add_collection(LineCollection(outline, colors=FAINT, linewidths=0.7))
     ends = [x[:2, :2] for x in surface.corners()]
-    ax.add_collection(LineCollection(ends, colors=INK, linewidths=4, capstyle="round"))
-    ax.add_collection(LineCollection(ends, array=np.ma.masked_invalid(values), cmap=colours, norm=norm, linewidths=3, capstyle="round"))
+    width = line_width(np.array(ends), outline.reshape(-1, 2))
+    ax.add_collection(LineCollection(ends, colors=INK, linewidths=width + min(1, 0.5 * width), capstyle="round"))
+    ax.add_collection(LineCollection(ends, array=np.ma.masked_invalid(values), cmap=colours, norm=norm, linewidths=width, capstyle="round"))
     ax.set_aspect("equal")
     ax.margins(0.03)
     ax.autoscale_view()
@@ -83,26 +91,31 @@ def draw_lines(ax, surface, outline, values, norm, colours):
     ax.set(xlabel="x (m)", ylabel="y (m)")
 
 
-def name_beside(ax, surface, trace, others):
-    """The name of a trace, along it where there is most room beside the other names."""
-    ends = np.array([surface.points[surface.polygons[face][:2]][:, :2].mean(axis=0) for face in trace.faces])
-    taken = np.array([text.get_position() for text in others]).reshape(-1, 2)
-    places = ends[np.unique(np.linspace(0, len(ends) - 1, 9).round().astype(int))]
-    room = [min(np.linalg.norm(taken - place, axis=1), default=1) for place in places]
-    middle = len(places) // 2
-    k = middle if not len(taken) or room[middle] > 0.15 * np.ptp(surface.points[:, :2]) else int(np.argmax(room))
-    text = ax.text(*places[k], trace.name, fontsize=6, ha="center", va="center", zorder=6)
-    text.set_path_effects([patheffects.withStroke(linewidth=1.5, foreground="white")])
-    return text
+def place_of_name(name, places, extent, taken):
+    """A place as near to the middle as possible where the name overlaps no other, and the half size of the name; or None.
+    `taken` are such pairs; a letter is about 1/60 as wide as the map, and 1/28 high."""
+    half = 0.5 * extent * (len(name) / 60, 1 / 28)
+    for place in sorted(places, key=lambda x: np.linalg.norm(x - places[len(places) // 2])):
+        if all(np.any(abs(place - other) > half + size) for other, size in taken):
+            return place, half
+    return None
 
 
 def write_names(ax, surface, names, singles):
-    """At traces that fractures.png shows in colour."""
-    texts = []
-    for number in sorted(set(surface.cell_data["fracture"].astype(int))):
-        traces = traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}", singles)
-        for trace in [trace for trace in traces if trace.colour != FAINT]:
-            texts.append(name_beside(ax, surface, trace, texts))
+    """At traces that fractures.png shows in colour, the largest jump first; names that would overlap are left out."""
+    jump = np.linalg.norm(surface.cell_data["jump local"][:, 1:], axis=1)
+    ends = np.array([surface.points[face[:2], :2].mean(axis=0) for face in surface.polygons])
+    traces = [trace for number in sorted(set(surface.cell_data["fracture"].astype(int)))
+              for trace in traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}", singles)
+              if trace.colour != FAINT]
+    taken = []
+    for trace in sorted(traces, key=lambda trace: -np.max(jump[trace.faces])):
+        places = ends[trace.faces][np.unique(np.linspace(0, len(trace.faces) - 1, 9).round().astype(int))]
+        found = place_of_name(trace.name, list(places), np.ptp(surface.points[:, :2], axis=0), taken)
+        if found:
+            taken.append(found)
+            text = ax.text(*found[0], trace.name, fontsize=6, ha="center", va="center", zorder=6)
+            text.set_path_effects([patheffects.withStroke(linewidth=1.5, foreground="white")])
 
 
 def of_step(rock, joints, names, title, singles=()):

@@ -7,6 +7,7 @@ from pathlib import Path
 from numbers_in_words import quantity
 
 CAPTIONS = {
+    "overview": "Slip of fractures and change of the fluid pressure",
     "bulk": "Rock, deformed: displacement, von Mises stress and largest compressive stress",
     "fractures": "Fractures: tangential jump, slip, opening, tractions and contact state",
     "maps": "Where fractures slip and open, and which directions tend to slip",

@@ -36,6 +36,7 @@ import magnitudes  # noqa: E402
 import maps  # noqa: E402
 import mohr  # noqa: E402
 import numpy as np  # noqa: E402
+import overview  # noqa: E402
 import read  # noqa: E402
 import series  # noqa: E402
 import style  # noqa: E402
@@ -384,6 +385,7 @@ class Pictures(PlotTest):
         rock = read.grid(read.written_steps(self.folder / "out", "bulk")[-1][1])
         shown = change.collections[0].get_array()
         self.assertTrue(np.allclose(np.sort(shown), np.sort(read.arrays(rock.GetCellData())["pressure"] / 1e6 - 10), atol=1e-6))
+        self.expect_overview(made["overview"], rock)
         self.assertIn("t = 3 h", made["flow"]._suptitle.get_text())
         self.expect_labels(made["bulk"], "largest compressive stress, less α (p − p₀) (MPa)")
         self.expect_labels(made["fractures"], "effective traction (MPa)")
@@ -399,6 +401,36 @@ class Pictures(PlotTest):
         self.assertTrue(np.allclose(lines["west"] / lines["west"][-1], np.array(wanted) / wanted[-1]))
         names = {text.get_text() for ax in made["maps"].axes for text in ax.texts}
         self.assertEqual(names, set(content["steps"][-1]["fractures"]))
+
+    def expect_overview(self, figure, rock):
+        """Slip, and changes of pressure in rock and in fractures, as the run wrote them; a mark at the well."""
+        left, right = figure.axes[:2]
+        self.expect_labels(figure, "slip (", "p − p₀ (MPa), width: aperture")
+        joints = read.arrays(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]).GetCellData())
+        shown = [c.get_array() for ax in (left, right) for c in ax.collections if c.get_array() is not None]
+        wanted = joints["slip"], read.arrays(rock.GetCellData())["pressure"] - 10e6, joints["fracture pressure"] - 10e6
+        for values, one in zip(shown, wanted, strict=True):
+            self.assertTrue(np.allclose(np.sort(values) / np.max(values), np.sort(one) / np.max(one), atol=1e-6))
+        self.assertEqual([tuple(line.get_xydata()[0]) for line in right.lines], [(97.5, 100)])
+        self.assertEqual([text.get_text() for text in right.texts], ["injector"])
+
+    def test_range_of_changes_of_pressure(self):
+        """From zero on for a rise, with an arrow for smaller falls; around zero where both are alike, or for a fall."""
+        for values, low, high, extend in ([0, 4], 0, 4, "neither"), ([-1, 4], 0, 4, "min"), ([-3, 4], -4, 4, "neither"), ([-4, 0], -4, 4, "neither"):
+            norm, _ = overview.range_of_change(np.array(values, dtype=float))
+            self.assertEqual((norm.vmin, norm.vmax, norm.extend), (low, high, extend))
+
+    def test_names_do_not_overlap(self):
+        """The second name moves along its trace, a third without room is left out; dense traces are thinner lines."""
+        places, extent = [np.array([x, 0.5]) for x in (0.1, 0.5, 0.9)], np.ones(2)
+        first = maps.place_of_name("a fault", places, extent, [])
+        self.assertEqual(tuple(first[0]), (0.5, 0.5))
+        second = maps.place_of_name("another", places, extent, [first])
+        self.assertIn(second[0][0], (0.1, 0.9))
+        self.assertIsNone(maps.place_of_name("a third", [first[0], second[0]], extent, [first, second]))
+        outline = np.array([[0.0, 0], [100, 100]])
+        traces = lambda n: np.tile([[0.0, 0], [50, 0]], (n, 1, 1))
+        self.assertEqual([maps.line_width(traces(n), outline) for n in (1, 25, 1000)], [3, 2, 1.8])
 
     def test_mohr(self):
         """Faces as the run wrote them, the circle of the mean stress, a line of the slope of friction, paths of means."""
