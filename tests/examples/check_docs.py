@@ -81,6 +81,7 @@ if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; 
   words+=(--set "Mesh file.path=$PWD/$folder/network.msh")
   if [[ ${{words[0]}} == run && " ${{words[*]}} " != *" --output "* ]]; then words+=(--output "$folder"); fi
 fi
+if [[ ${{words[0]}} == new ]]; then exec {root}/sprekk "${{words[@]}}"; fi
 if [[ ${{words[0]}} =~ ^(plot|report|export)$ ]]; then exec {python} -B {root}/apps/${{words[0]}} "${{words[@]:1}}"; fi
 if [[ ${{words[0]}} == fit ]]; then exec {python} -B {root}/apps/fit --program {binary} "${{words[@]:1}}" "${{sets[@]}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
