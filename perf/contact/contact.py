@@ -21,14 +21,14 @@ import violation  # noqa: E402
 from scenes import scenes  # noqa: E402
 
 LIMITS = program_run.Limits(processor=120, clock=900)
-BOUNDS = {"median": 5, "p90": 12, "worst_violation": 1e-8}  # what --quick as a test demands
+BOUNDS = {"median": 5, "p90": 12, "worst_violation": 1e-8}  # limits of --quick when it serves as a test
 COLUMNS = ("scene", "dim", "unknowns", "steps", "median", "max", "cuts", "failures", "residual", "violation", "error", "undirected", "seconds")
 SMALL = ("residual", "violation", "error")
 
 
 @dataclass
 class Run:
-    """What is known of a scene that has been run. `failures` says in words what is wrong."""
+    """Measured values of one scene. `failures` contains the messages of failed checks."""
     scene: object
     directory: Path
     ranks: int = 1
@@ -61,12 +61,12 @@ class Run:
 
     @property
     def measured(self):
-        """Whether the run belongs into the counts."""
+        """True if the run counts in the statistics."""
         return bool(self.steps) and not self.scene.refused
 
 
 def start(options, scene, ranks):
-    """Runs the scene; the status is None after the time limit."""
+    """Runs the scene; returns (Run, status). The status is None after a time limit."""
     directory = options.output / re.sub(r"[^\w.+-]+", "_", scene.name) / f"{ranks}"
     words = [word for entry in scene.sets for word in ("--set", entry)]
     ended = program_run.run(options.binary, ROOT / "xml" / scene.file, directory, ranks, words, LIMITS)
@@ -75,7 +75,7 @@ def start(options, scene, ranks):
 
 
 def judge(run, status):
-    """Fills in what follows from the results, and what is wrong with them."""
+    """Computes violations and errors from the results and adds messages to run.failures."""
     scene = run.scene
     if scene.refused:
         said = re.search(scene.refused, run.results.get("reason", ""), re.IGNORECASE)
@@ -102,8 +102,9 @@ def judge(run, status):
 
 
 def compare(run, other):
-    """States on one rank and on several, face by face; returns lines that name the faces. Where a scene may have several
-    equilibria, two that differ must both obey the laws."""
+    """Compares the states on one rank and on several, face by face. Returns lines that name the differing faces.
+
+    If a scene may have several equilibria, two different states are accepted when both satisfy the laws."""
     if len(run.faces) != len(other.faces):
         run.failures.append(f"{len(run.faces)} steps written on one rank, {len(other.faces)} on several")
         return []
@@ -121,7 +122,7 @@ def compare(run, other):
 
 
 def row(run):
-    """The values of COLUMNS."""
+    """Returns the values of COLUMNS."""
     values = [run.scene.name] + [None] * (len(COLUMNS) - 1)
     if run.results.get("mesh") and run.results.get("blocks"):
         values[1:3] = run.dim, run.unknowns
@@ -140,7 +141,7 @@ def line(values):
 
 
 def same_counts(runs):
-    """Scenes of a group must need the same numbers of iterations."""
+    """Adds a failure where scenes of one group need different numbers of iterations."""
     groups = {}
     for run in runs:
         if run.scene.group and run.steps:
@@ -160,7 +161,8 @@ def summary(runs):
 
 
 def bar_chart(runs, file, most=40):
-    """Median and largest number of iterations of each scene; bars end at `most`, with the number beside them."""
+    """Draws the median and largest number of iterations of each scene. Bars end at `most` and are labelled with
+    the largest."""
     import style
     counted = [run for run in runs if run.measured]
     figure, axes = style.plt.subplots(figsize=(7, 0.6 + 0.14 * len(counted)))

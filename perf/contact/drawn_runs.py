@@ -1,4 +1,4 @@
-"""Runs all scenes of a seed, a few at a time, and keeps those that are wrong with what is wrong with them."""
+"""Runs all scenes of a seed, several at a time, and saves the failed scenes with their messages."""
 import csv
 import shutil
 from concurrent.futures import ProcessPoolExecutor
@@ -7,19 +7,19 @@ from functools import partial
 
 import numpy as np
 
-import linear  # of perf/krylov
+import linear  # in perf/krylov
 
 VERDICTS = ("ok", "refused", "failed", "hang", "violation")
 
 
 @dataclass
 class Outcome:
-    """What is kept of a scene once it has been run and judged."""
+    """Result of one scene after its run and its checks."""
     name: str
-    line: str                 # of the table that is printed
-    row: list                 # of the CSV
+    line: str                 # of the printed table
+    row: list                 # of the CSV file
     verdict: str = "ok"       # one of VERDICTS
-    what: list = field(default_factory=list)   # is wrong
+    what: list = field(default_factory=list)   # messages of failures
     ranks: list = field(default_factory=list)  # differences between numbers of ranks
     newton: list = field(default_factory=list)  # iterations of each step
     notes: list = field(default_factory=list)
@@ -36,7 +36,9 @@ def add_options(parser):
 
 
 def keep_or_remove(output, scene, results, wrong):
-    """The scene moves to failures, with what is wrong in its first line, or goes with what the run wrote."""
+    """Moves a failed scene to `failures` and writes the messages into its first line; removes a correct one.
+
+    The output of the run is always removed."""
     files = sorted(scene.parent.glob(f"{scene.stem}.*"))
     if wrong:
         words = "; ".join(wrong).replace("--", "- -")
@@ -50,7 +52,7 @@ def keep_or_remove(output, scene, results, wrong):
 
 
 def summary(outcomes):
-    """The numbers of the last line, and whether something is wrong."""
+    """Returns the numbers of the last line, and whether any scene failed."""
     counted = [o.newton for o in outcomes if o.newton and o.verdict != "refused"] or [[np.nan]]
     verdicts = [o.verdict for o in outcomes]
     total = {"failures": verdicts.count("failed"), "hangs": verdicts.count("hang"), "violations": verdicts.count("violation"),
@@ -61,10 +63,12 @@ def summary(outcomes):
 
 
 def run_all(options, names, run_one, title, columns, again):
-    """`names`: by the numbers of scenes; run_one(options, k) is an Outcome; `again`: the command that runs one again, but for
-    its name. Returns the exit status."""
+    """Runs the scenes of `names` (number: name) in parallel processes; returns the exit status.
+
+    run_one(options, k) returns an Outcome. `again` is the command that repeats a run, without the name of the
+    scene."""
     chosen = linear.matching(options, list(names), names.get)
-    del options.refuse  # a method of the parser, which cannot be sent to another process
+    del options.refuse  # method of the parser, which cannot be pickled for another process
     for folder in ("drawn", "failures"):
         (options.output / folder).mkdir(parents=True, exist_ok=True)
     print(title)

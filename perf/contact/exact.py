@@ -1,15 +1,14 @@
-"""Exact answers of scenes, from formulas; each function gives the largest relative error of a run.
+"""Exact solutions of scenes, from formulas. Each function returns the largest relative error of a run.
 
-Units and symbols as in docs/model/model.md: N = -lambda_n, d = (d_t, d_n) the displacement of the top of a block of height H
-whose bottom is fixed. Derived from equilibrium and the law of the joint; checks of the formulas are in the functions'
-comments."""
+Units and symbols are those of docs/model/model.md. N = -lambda_n; d = (d_t, d_n) is the displacement of the top
+of a block of height H whose bottom is fixed. The formulas follow from equilibrium and the joint law."""
 import math
 
 import numpy as np
 
 
 class Answers:
-    """Largest error of several quantities, each relative to its own reference, or to a scale where that is zero."""
+    """Largest error of several quantities, each relative to its reference value, or to a scale if that value is 0."""
 
     def __init__(self):
         self.error = 0.0
@@ -22,7 +21,8 @@ class Answers:
 
 
 def load_for(compliance, joint, opening):
-    """N >= 0 with compliance N + closure(N) = opening: the root of a quadratic, without cancellation."""
+    """Solves compliance N + closure(N) = opening for N >= 0: a quadratic, whose root is computed without
+    cancellation."""
     if joint.closure == 0:
         return opening / compliance
     product = joint.closure * joint.normal_stiffness
@@ -32,8 +32,10 @@ def load_for(compliance, joint, opening):
 
 
 def column(joint, rock, height, d_t, d_n, slipped):
-    """(state, lambda_t, lambda_n, p, [[u]]_n) of a block with one fracture after one step from the plastic jump
-    `slipped`: rock and joint are springs in series, and each regime is a quadratic in N."""
+    """Returns (state, lambda_t, lambda_n, p, [[u]]_n) of a block with one fracture after one step from the plastic
+    jump `slipped`.
+
+    Rock and joint are springs in series; each contact state leads to a quadratic in N."""
     k_s, k_n = rock["G"] / height, (rock["lam"] + 2 * rock["G"]) / height
     stiffness = 1 / (1 / k_s + 1 / joint.stiffness)
     opening = joint.gap + joint.dilation * abs(slipped) - d_n
@@ -52,13 +54,14 @@ def column(joint, rock, height, d_t, d_n, slipped):
 
 
 def table(run, name):
-    """Its values after the first; empty without such a table."""
+    """Returns the values of a table without the first; an empty list if the table does not exist."""
     return run.input.numbers("Tables", name, "values")[1:] if run.input.text("Tables", name, "values") else []
 
 
 def block(run):
-    """Every face of every step of a periodic block, see column(); the loads stand in tables. A fluid pressure p acts on
-    the column like a displacement p/k_n more of its top."""
+    """Checks every face in every step of a periodic block against column(); the loads are tables of the scene.
+
+    A fluid pressure p has the same effect as an additional displacement p/k_n of the top."""
     rock, joint = run.input.rock("rock"), run.input.joints[0]
     height = run.input.numbers("Mesh", "upper corner")[-1] - run.input.numbers("Mesh", "lower corner")[-1]
     loads, pressures = list(zip(table(run, "tangential"), table(run, "normal"))), table(run, "p")
@@ -67,7 +70,7 @@ def block(run):
     assert len(loads) == len(run.faces)
     for (d_t, d_n), pressure, faces in zip(loads, pressures or [0] * len(loads), run.faces):
         state, shear, normal, p, opening = column(joint, rock, height, d_t, d_n + pressure / k_n, slipped)
-        tangent = 1 if run.dim == 2 else 2  # in the frame of a horizontal face x is t in 2D, t2 in 3D
+        tangent = 1 if run.dim == 2 else 2  # a horizontal face has t along x in 2D, t2 along x in 3D
         for values, reference, scale in ((faces.traction[:, 0], normal, rock["G"] * size / height),
                                          (faces.traction[:, tangent], shear, rock["G"] * size / height),
                                          (faces.plastic[:, tangent], p, size), (faces.jump[:, 0], opening, size)):
@@ -79,7 +82,9 @@ def block(run):
 
 
 def seed(run):
-    """Push: the whole jump is elastic, to about K_t H/G = 1e-11. Pull: the whole jump is plastic, without traction.
+    """Checks the seed scenes. Push: the jump is elastic, up to about K_t H/G = 1e-11. Pull: the jump is plastic,
+    without traction.
+
     The normal of the fracture is along y."""
     d, joint, faces = run.input.numbers("Boundary conditions", "moved", "displacement"), run.input.joints[0], run.faces[-1]
     shift, pushed, answers = math.hypot(d[0], *d[2:]), d[1] < 0, Answers()
@@ -91,12 +96,12 @@ def seed(run):
 
 
 def means(run, quantity):
-    """Mean over the fracture in every step, global components."""
+    """Returns the mean over the first fracture in every step, in global components."""
     return np.array([next(iter(step["fractures"].values()))[quantity]["global"] for step in run.results["steps"]])
 
 
 def cycles(run):
-    """Radial return at the turning points: the traction is +-mu N, the plastic jump +-(D - S), S = mu N/K_s = 0.27."""
+    """Checks the turning points by radial return: traction +-mu N, plastic jump +-(D - S) with S = mu N/K_s = 0.27."""
     rock, joint = run.input.rock("rock"), run.input.joints[0]
     N = 0.1 * (rock["lam"] + 2 * rock["G"])
     far = 0.5 - joint.friction * N * (1 / rock["G"] + 1 / joint.stiffness)
@@ -106,8 +111,10 @@ def cycles(run):
 
 
 def turns(steps):
-    """Radial return along a circle of radius 0.5, in so many steps a turn; it ends on the circle of the steady state of
-    implicit Euler, |p| = -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)) for turns by D."""
+    """Returns a check by radial return along a circle of radius R = 0.5, with `steps` steps per turn.
+
+    The last plastic jump must lie on the steady circle of implicit Euler,
+    |p| = -S sin(D/2) + sqrt(R^2 - S^2 cos^2(D/2)), for turns by D per step."""
     return lambda run: _turns(run, 2 * math.pi / steps)
 
 
@@ -127,7 +134,8 @@ def _turns(run, turn):
 
 
 def incline(run):
-    """A layer of height h and weight W per volume on a slope: lambda_n = -W h cos(beta), |lambda_t| = W h sin(beta)."""
+    """Checks a layer of height h and weight W per volume on a slope: lambda_n = -W h cos(beta), |lambda_t| = W h
+    sin(beta)."""
     beta = math.radians(abs(run.input.number("Mesh", "rotation")))
     weight = -run.input.numbers("Bulk", "body force")[-1] * 0.5
     answers = Answers()
@@ -137,7 +145,7 @@ def incline(run):
 
 
 def hanging(run):
-    """The one face that carries a unit cube has its weight, and no shear."""
+    """Checks a unit cube held by one face: this face carries the weight, without shear; the others carry nothing."""
     weight = -run.input.numbers("Bulk", "body force")[-1]
     answers, traction = Answers(), run.faces[-1].traction
     answers.add(traction[:, 0].min(), -weight, weight)
@@ -147,8 +155,10 @@ def hanging(run):
 
 
 def uniform(stress, normals, slips):
-    """A check of fractures through a block under uniform stress, by quantities that do not depend on the frame. Each
-    normal is that of a fracture, in the order of names; it has slipped by slip times lambda_t."""
+    """Returns a check of fractures through a block under uniform stress, by quantities independent of the face
+    frame.
+
+    normals[k] belongs to fracture k, in the order of names; its slip is slips[k] times lambda_t."""
     def check(run):
         answers, faces = Answers(), run.faces[-1]
         for k, (normal, slip, joint) in enumerate(zip(normals, slips, run.input.joints)):

@@ -1,20 +1,22 @@
-"""The laws of joints, from the entries of a material and the formulas of docs/model/model.md, and nothing of the program.
+"""Joint laws computed from the entries of a material and the formulas of docs/model/model.md, independent of the
+program.
 
-What the laws keep of a face is read from the fields that the run wrote; by how much these may move in a step is computed here."""
+History variables of the faces are read from the output of the run. Their admissible change in a step is
+computed here."""
 import math
 
 import numpy as np
 
-NEAR_ZERO = 1e-3   # of the smaller damage length: within it the sides of anisotropic damage pass into each other
-ROUNDED = 0.003    # of an abscissa of Barton's table: as far around it the curve is a parabola
+NEAR_ZERO = 1e-3   # relative to the smaller damage length: below it, anisotropic damage blends both slip senses
+ROUNDED = 0.003    # relative to an abscissa of Barton's table: half-width of the parabola at the corner
 ROUGHNESS = (np.array([0.3, 0.6, 1, 2, 4, 10, 100]), np.array([0, 0.75, 1, 0.85, 0.7, 0.5, 0]))
 RESIDUAL = (np.array([0, 0.3]), np.array([0.0, 1.0]))
 ENDLESS = 1e300
-JUST_TOUCH = 1e-9  # of jump and slip: faces nearer than that touch
+JUST_TOUCH = 1e-9  # relative to jump and slip: distance below which faces touch
 
 
 def rounded(table, x):
-    """The curve through the points of a table, constant outside, with rounded corners."""
+    """Returns the piecewise linear curve of a table, constant outside, with rounded corners."""
     points, values = table
     y = np.interp(x, points, values)
     slopes = np.r_[0, np.diff(values) / np.diff(points), 0]
@@ -26,8 +28,10 @@ def rounded(table, x):
 
 
 class JointLaw:
-    """A joint of one material. `entry(name, default)` is a number, `kind(role)` a name. The faces that it is asked about have
-    `normal` and `shear`, tractions; `slip` = |u_t^p|; and in `told` the fields of histories by their names."""
+    """Joint law of one material. entry(name, default) returns a number, kind(role) the name of a law.
+
+    Arguments `faces` have the tractions `normal` and `shear`, `slip` = |u_t^p|, and in `told` the history
+    fields by name."""
 
     def __init__(self, entry, kind):
         self.entry, self.kinds = entry, {role: kind(role) for role in (
@@ -35,7 +39,7 @@ class JointLaw:
         self.gap = entry("initial gap", 0)
 
     def number(self, name, default=None):
-        """Of a coefficient, or of the angle that it is the tangent of."""
+        """Returns a coefficient; if only the corresponding angle is given, its tangent."""
         value = self.entry(name, None)
         if value is None and name.endswith("coefficient"):
             angle = self.entry(name.replace("coefficient", "angle"), None)
@@ -45,7 +49,7 @@ class JointLaw:
     # ---- friction ----------------------------------------------------------------------------------------------------
 
     def bound(self, faces):
-        """On |lambda_t|, Pa."""
+        """Bound on |lambda_t|, Pa."""
         friction, dilation = self.left(faces)
         normal = faces.normal
         load = np.maximum(-normal, 0)
@@ -55,7 +59,7 @@ class JointLaw:
             bound = self._friction(load, faces, dilation, friction)
         if self.kinds["bond"] == "none":
             return bound
-        # under tension, which a bond may bear, the line of the origin goes on
+        # Under tension, which only a bond can carry, the friction line continues with its slope at zero load.
         small = np.full_like(load, 1e-9 * max(load.max(initial=0), 1e-300))
         slope = self._friction(small, faces, dilation, friction) / small
         if self.kinds["friction"] != "composed":
@@ -88,7 +92,7 @@ class JointLaw:
 
     @property
     def least_friction(self):
-        """A coefficient that the joint has after any slip, under any load, without its bond."""
+        """Lower bound of the friction coefficient after any slip and under any load, without the bond."""
         kind = self.kinds["friction"]
         if "Barton-Choubey" in kind:
             least = math.tan(math.radians(self.entry("residual friction angle", None)))
@@ -98,7 +102,7 @@ class JointLaw:
 
     @property
     def roughness(self):
-        """JRC, JCS of the joint."""
+        """(JRC, JCS) of the joint, scaled to its length."""
         roughness, strength = self.entry("joint roughness coefficient", None), self.entry("joint wall strength", None)
         length = self.entry("joint length", None)
         if not length:
@@ -111,14 +115,14 @@ class JointLaw:
         given, length = self.entry("peak slip", None), self.entry("joint length", None)
         return given if given else length / 500 * (self.roughness[0] / length) ** 0.33
 
-    # ---- where the faces touch ---------------------------------------------------------------------------------------
+    # ---- contact ---------------------------------------------------------------------------------------------------
 
     def closed_gap(self, faces):
-        """g of (14), m."""
+        """Gap g of (14), m."""
         return self.gap + self.lifted(faces) - self._closure(faces)
 
     def lifted(self, faces):
-        """By how much slip has opened the faces, m."""
+        """Opening by slip (dilation), m."""
         return self.left(faces)[1] * self._dilation(faces)
 
     def _dilation(self, faces):
@@ -169,15 +173,15 @@ class JointLaw:
     # ---- bond and damage ---------------------------------------------------------------------------------------------
 
     def whole(self, faces):
-        """The part of a bond that is left."""
+        """Remaining fraction of the bond."""
         return 1 - faces.told["damage of bond"] if self.kinds["bond"] == "linear softening" else 1.0
 
     def tension(self, faces):
-        """The most that faces bear, Pa."""
+        """Tensile strength, Pa."""
         return self.whole(faces) * (self.entry("tensile strength", 0) if self.kinds["bond"] == "linear softening" else 0)
 
     def left(self, faces):
-        """The parts of friction and dilation that damage leaves."""
+        """Fractions of friction and dilation that remain after damage."""
         if self.kinds["damage"] == "none":
             return 1.0, 1.0
         lengths = [self.entry(f"damage length of {what}", math.inf) for what in ("friction", "dilation")]
@@ -190,12 +194,14 @@ class JointLaw:
             parts.append(part)
         return parts
 
-    # ---- how histories move ------------------------------------------------------------------------------------------
+    # ---- evolution of the history variables ------------------------------------------------------------------------
 
     def wrong_histories(self, faces, before, path):
-        """[face] By how much the fields of histories differ from what those at the start of the step and the step say, m; loads
-        over the normal stiffness. `path` has the segments (plastic jumps from, to, weight k) of all steps up to this one, or is
-        None where one of them is not known."""
+        """[face] Error of the history variables relative to their value computed from the start of the step and
+        the step, m.
+
+        Loads are divided by the normal stiffness. `path` contains the segments (plastic jump from, to, weight
+        k) of all steps up to this one; it is None if a step is unknown."""
         rubbed = self.rubbed_share(faces, before, path and path[:-1]) * _slip_of_step(faces, before)
         wrong, told, was = np.zeros(len(rubbed)), faces.told, before.told
 
@@ -217,8 +223,10 @@ class JointLaw:
         return wrong
 
     def rubbed_share(self, faces, before, path):
-        """[face] The share of the slip of the step that histories count: 1, but 0 on open faces. Those that are open and just
-        touch may have rubbed for a part of it: then what the run tells says for which."""
+        """[face] Share of the slip of the step that counts in histories: 1 on closed faces, 0 on open ones.
+
+        Open faces that just touch may have been closed during a part of the step. Their share follows from the
+        histories of the run."""
         closed, apart = faces.state > 0, faces.jump[:, 0] - self.closed_gap(faces)
         touch = (~closed | (faces.normal >= 0)) & (np.abs(apart) <= JUST_TOUCH * (np.abs(faces.jump[:, 0]) + faces.slip))
         slip = _slip_of_step(faces, before)
@@ -236,7 +244,7 @@ class JointLaw:
         return np.where(touch, share, closed)
 
     def weight(self, faces):
-        """k, by which slip counts."""
+        """Weight k of slip in the damage history."""
         kind = self.kinds["damage driver"]
         if kind == "slip":
             return np.ones(len(faces.normal))
@@ -244,7 +252,8 @@ class JointLaw:
         return size / self.entry("reference stress", None)
 
     def _mean_tangent(self, faces, before, rubbed):
-        """Of the mobilised dilation angle over the slip of the step, by Gauss' rule between the kinks of the table."""
+        """Mean tangent of the mobilised dilation angle over the slip of the step, by Gauss quadrature between the
+        table points."""
         roughness, strength = self.roughness
         load = np.maximum(-faces.normal, 1e-6 * strength)
         angle = np.radians(roughness * np.log10(np.maximum(strength / load, 1)) / self.entry("asperity damage coefficient", 2))
@@ -264,8 +273,9 @@ def _slip_of_step(faces, before):
 
 
 def history_of(path, faces):
-    """Lambda(m) = sum of k |<m.u> - <m.u_before>| over a path for the present directions m of the plastic jumps, and sum of
-    k |du|, [face]."""
+    """Returns Lambda(m) = sum of k |<m.u> - <m.u_before>| over a path, and the sum of k |du|, both [face].
+
+    m is the present direction of the plastic jump of a face."""
     m = faces.plastic[:, 1:] / np.where(faces.slip > 0, faces.slip, 1)[:, None]
     total, length = 0, 0
     for start, end, k in path:

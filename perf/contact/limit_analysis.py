@@ -1,14 +1,14 @@
-"""Limit analysis: are there tractions on the fractures that balance the loads on every piece of rock?
+"""Limit analysis: do tractions on the fractures exist that balance the loads on every block?
 
-Pieces are taken as rigid. Tractions are constant on each face of a fracture, compressive, and within the cone of friction;
-where a displacement is prescribed, supports bear any force. By virtual work, for every rigid motion m of one piece that the
-supports leave free, with [[m]] the jump of m and A the area of a face,
+Blocks are taken as rigid. Tractions are constant on each face of a fracture, compressive, and within the
+friction cone. Prescribed displacements can transmit any force. Let m be a rigid motion of one block that the
+supports permit, [[m]] its jump and A the area of a face. By virtual work, for every m,
 
     sum over faces  A lambda . [[m]]  =  work of body forces, boundary tractions and fluid pressures on m.
 
-This is a linear programme once the cone has edges: exact in 2D; in 3D with EDGES edges on the cone, so that tractions which
-are found do exist. Nothing of the solver is used, and neither elasticity nor the path of the loads matters: where there are no
-such tractions, there is no equilibrium."""
+With a cone of finitely many edges this is a linear programme. It is exact in 2D. In 3D the cone has EDGES edges
+inside the friction cone, so that tractions found this way are admissible. The check uses nothing of the solver
+and depends neither on elasticity nor on the load path: without such tractions there is no equilibrium."""
 import math
 import re
 from pathlib import Path
@@ -24,7 +24,7 @@ FUNCTIONS = {name: getattr(math, name) for name in ("sin", "cos", "exp", "sqrt",
 
 
 class Loads:
-    """The expressions of a scene."""
+    """Expressions of a scene for its loads."""
 
     def __init__(self, input_):
         self.input = input_
@@ -35,7 +35,7 @@ class Loads:
         return lambda t: float(np.interp(t, points, values))
 
     def texts(self, *path):
-        """Those of an entry, one for each direction; none if it is not there."""
+        """Returns the expressions of an entry, one per direction; an empty list if the entry is missing."""
         text = (self.input.text(*path) or "").strip().strip("{}")
         return [word.strip() for word in re.split(r",(?![^(]*\))", text)] if text else []
 
@@ -45,7 +45,7 @@ class Loads:
 
 
 class Motions:
-    """Rigid motions of each piece which the supports leave free, those of all pieces one after the other."""
+    """Rigid motions of each block that the supports permit, numbered block after block."""
 
     def __init__(self, rock, parts, loads):
         dim = rock.points.shape[1]
@@ -56,7 +56,7 @@ class Motions:
         self.start = np.cumsum([0] + [basis.shape[1] for basis in self.free])
 
     def _held(self, rock, parts, loads):
-        """For each piece the rigid motions of those components of its nodes that are prescribed."""
+        """For each block, the rows of rigid motions at the prescribed displacement components of its nodes."""
         held, components = [[] for _ in range(parts.count)], {}
         for name in loads.input.names("Boundary conditions"):
             fixed = [i for i, text in enumerate(loads.texts("Boundary conditions", name, "displacement")) if text != "free"]
@@ -72,13 +72,13 @@ class Motions:
         return self.start[-1]
 
     def rigid(self, piece, place):
-        """Displacements [dim, motions] of a point, by translations and turns about the centre of the piece."""
+        """Displacements [dim, motions] of a point under translations and rotations about the centre of the block."""
         x = (place - self.centres[piece]) / self.length
         turns = [[-x[1]], [x[0]]] if len(x) == 2 else [[0, x[2], -x[1]], [-x[2], 0, x[0]], [x[1], -x[0], 0]]
         return np.hstack([np.eye(len(x)), turns])
 
     def work(self, piece, place, forces):
-        """Work [all motions, n] of forces [dim, n] on a piece."""
+        """Work [all motions, n] of forces [dim, n] on a block."""
         rows = np.zeros((self.count, forces.shape[1]))
         rows[self.start[piece]:self.start[piece + 1]] = (self.rigid(piece, place) @ self.free[piece]).T @ forces
         return rows
@@ -104,7 +104,7 @@ def cone(normal, friction):
 
 
 def given_forces(rock, parts, loads, time):
-    """(piece, place, force) of body forces, boundary tractions and fluid pressures."""
+    """Yields (block, place, force) of body forces, boundary tractions and fluid pressures."""
     input_ = loads.input
     body = loads.texts("Bulk", "body force")
     for piece, volume, place in zip(parts.of_cell, rock.volumes, rock.centres) if body else ():
@@ -121,7 +121,7 @@ def given_forces(rock, parts, loads, time):
 
 
 def admissible(input_, rock, time):
-    """Whether such tractions exist under the loads of a scene at `time`."""
+    """True if tractions in balance with the loads of the scene at `time` exist."""
     names, loads = input_.names("Fractures"), Loads(input_)
     parts = rigid_pieces.pieces(rock, names)
     motions = Motions(rock, parts, loads)
@@ -137,7 +137,7 @@ def admissible(input_, rock, time):
             edges = cone(face.normal, friction[face.name])
             columns.append(motions.work(face.pieces[0], face.centre, edges) + motions.work(face.pieces[1], face.centre, -edges))
     matrix = np.hstack(columns)
-    for method in ("highs", "highs-ipm", "highs-ds"):  # each loses its way in some nearly dependent rows
+    for method in ("highs", "highs-ipm", "highs-ds"):  # each method fails for some nearly dependent rows
         found = linprog(np.zeros(matrix.shape[1]), A_eq=matrix, b_eq=-given[:, 0], method=method)
         if found.status in (0, 2):
             return found.status == 0
@@ -145,7 +145,7 @@ def admissible(input_, rock, time):
 
 
 def of_scene(path, time):
-    """The same of the file of a scene: a box, or a mesh that apps/mesh made."""
+    """Calls admissible() for a scene file with a box, or with a mesh from apps/mesh."""
     input_ = violation.Input(path)
     mesh = input_.text("Mesh file", "path")
     return admissible(input_, rigid_pieces.simplices(Path(path).parent / mesh) if mesh else rigid_pieces.box(input_), time)

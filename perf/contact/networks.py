@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Writes the networks of fractures in xml/contact as input of gmsh: networks.py FOLDER, then gmsh -2 on each file.
+"""Writes the fracture networks of xml/contact as input of gmsh: networks.py FOLDER, then gmsh -2 on each file.
 
-Straight fractures at random places in the unit square, split where they meet. In network_x.geo all cross freely; in
-network_t.geo every second one ends where it first meets an older one."""
+The networks consist of straight fractures at random places in the unit square, split at intersections. In
+network_x.geo fractures cross. In network_t.geo every second fracture ends at its first intersection with an
+older one."""
 import sys
 from pathlib import Path
 
 import numpy as np
 
-SIZE = 0.045  # of the mesh
+SIZE = 0.045  # mesh size
 
 
 def segments(count, seed):
@@ -23,19 +24,19 @@ def segments(count, seed):
 
 
 def crossing(a, b):
-    """Where segments a and b meet: the positions on each, from 0 to 1, or None."""
+    """Returns the positions, 0 to 1, of the intersection on segments a and b; None without an intersection."""
     da, db, shift = a[1] - a[0], b[1] - b[0], b[0] - a[0]
     determinant = da[0] * db[1] - da[1] * db[0]
     if abs(determinant) < 1e-12:
         return None
     s = (shift[0] * db[1] - shift[1] * db[0]) / determinant
     t = (shift[0] * da[1] - shift[1] * da[0]) / determinant
-    slack = 1e-9  # an end that lies on the other segment meets it
+    slack = 1e-9  # accepts ends that lie on the other segment
     return (s, t) if -slack <= s <= 1 + slack and -slack <= t <= 1 + slack else None
 
 
 def abutting(ends):
-    """Every second fracture cut off where it first meets an older one, if a fifth of it remains."""
+    """Cuts every second fracture at its first intersection with an older one, if at least a fifth of it remains."""
     for i in range(1, len(ends), 2):
         meets = [meet[0] for meet in (crossing(ends[i], older) for older in ends[:i]) if meet and meet[0] > 0.2]
         if meets:
@@ -44,7 +45,7 @@ def abutting(ends):
 
 
 def geo(ends, what):
-    """The text of a file of gmsh."""
+    """Returns the text of a gmsh .geo file."""
     points, lines, groups = [], [], []
 
     def point(x):

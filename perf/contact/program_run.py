@@ -1,4 +1,4 @@
-"""Runs scenes by the program, on one rank or several, under limits of time."""
+"""Runs scenes with the program on one or several ranks, under time limits."""
 import json
 import os
 import shutil
@@ -6,19 +6,19 @@ import subprocess
 import time
 from dataclasses import dataclass, field
 
-ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}  # without a daemon of Open MPI
-STOPPED = (124, 137, -9)  # statuses after these limits
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}  # no Open MPI daemon
+STOPPED = (124, 137, -9)  # exit statuses after a time limit
 
 
 @dataclass
 class Limits:
-    processor: int = 120  # s, of each rank
-    clock: int = 900      # s; those on the clock depend on what else runs
+    processor: int = 120  # CPU seconds of each rank
+    clock: int = 900      # wall-clock seconds, which depend on the load of the machine
 
 
 @dataclass
 class Ended:
-    """`status` is None after a limit. `results`: of results.json."""
+    """Result of a run. `status` is None after a time limit; `results` is the content of results.json."""
     status: int
     words: str
     seconds: float
@@ -38,7 +38,7 @@ def last_line(words):
 
 
 def run(binary, scene, directory, ranks=1, words=(), limits=Limits(), anew=True):
-    """Runs a scene into a directory, which is emptied before if `anew`."""
+    """Runs a scene into a directory. With `anew` the directory is emptied first."""
     if anew:
         shutil.rmtree(directory, ignore_errors=True)
     command = ["prlimit", f"--cpu={limits.processor}", str(binary), "run", str(scene), "--output", str(directory), *words]

@@ -1,6 +1,7 @@
-"""Further families of scenes at random, of loads and parts that random_scenes does not draw: every one of them has a state.
+"""Further families of random scenes, with loads and features that random_scenes does not draw.
 
-Sides are held, or all load is a uniform pressure, so that tractions in balance exist; a refusal is a failure."""
+All scenes have a solution: sides are fixed, or the load is a uniform pressure. A refusal therefore is a
+failure."""
 import math
 
 from random_scenes import SIDES, box, finish, given_displacement, path, random_fractures, rectangle, shape
@@ -12,7 +13,7 @@ def stress_of(draw, p):
 
 
 def drawn_box(draw, through=None):
-    """(corner, cells, fractures)"""
+    """Returns (upper corner, cells, fractures)."""
     dim = draw.dim
     cells = [draw.rng.randint(5, 10) if dim == 2 else draw.rng.randint(3, 4) for _ in range(dim)]
     high = [draw.size * n / cells[0] for n in cells]
@@ -20,7 +21,7 @@ def drawn_box(draw, through=None):
 
 
 def springs(draw):
-    """A box between rigid ground, to which springs tie its sides, and a plate that moves."""
+    """Box whose sides rest on springs (elastic foundations), except the last side, which a plate moves."""
     dim, rng = draw.dim, draw.rng
     high, cells, fractures = drawn_box(draw)
     sides = SIDES[:2 * dim]
@@ -36,7 +37,7 @@ def springs(draw):
 
 
 def confined(draw):
-    """A pressure on all sides, which changes; points hold the box just so that it cannot move."""
+    """Varying pressure on all sides; point supports prevent rigid motions only."""
     dim = draw.dim
     high, cells, fractures = drawn_box(draw)
     sides = SIDES[:2 * dim]
@@ -53,7 +54,7 @@ def confined(draw):
 
 
 def gravity(draw):
-    """Rock under its weight in the ground: sides on rollers, a lithostatic stress or none, the floor moves a little."""
+    """Rock under gravity with roller sides, with or without lithostatic stress; the floor moves slightly."""
     dim, rng = draw.dim, draw.rng
     high, cells, fractures = drawn_box(draw)
     sides, load = SIDES[:2 * dim], draw.modulus * draw.strain
@@ -73,7 +74,7 @@ def gravity(draw):
 
 
 def periodic(draw):
-    """Layers and other fractures between two plates, periodic in the other directions."""
+    """Layers between two plates, periodic in the other directions."""
     dim, rng = draw.dim, draw.rng
     high, cells, _ = drawn_box(draw)
     fractures = {}
@@ -89,7 +90,8 @@ def periodic(draw):
 
 
 def stages(draw):
-    """Rock under an initial stress, of which a region is taken away, at once or little by little; joints lose friction later."""
+    """Rock under initial stress with an excavation, at once or released gradually; optionally, a later support
+    pressure."""
     dim, rng = draw.dim, draw.rng
     draw.steps = max(draw.steps, 4)
     cells = [rng.randint(7, 10) if dim == 2 else 4 for _ in range(dim)]
@@ -112,7 +114,7 @@ def stages(draw):
 
 
 def lines(draw):
-    """Polylines that bend, meet in T and L, and cross; a region of other rock that they run through."""
+    """Polylines with bends, T and L junctions and crossings; optionally, a region of other rock."""
     rng, size = draw.rng, draw.size
     sets = {}
     for k in range(rng.randint(2, 4)):
@@ -129,7 +131,7 @@ def lines(draw):
             sets[f"l{k}"] = {"lines": {"line": {"points": points}}}
     if not sets:
         sets["l0"] = {"lines": {"line": {"points": [0.2 * size, 0.3 * size, 0.7 * size, 0.6 * size]}}}
-    stem = next(iter(sets.values()))["lines"]["line"]["points"]  # a T: another ends in the middle of its first part
+    stem = next(iter(sets.values()))["lines"]["line"]["points"]  # T junction at the middle of its first segment
     middle = [(stem[0] + stem[2]) / 2, (stem[1] + stem[3]) / 2]
     across = [-(stem[3] - stem[1]), stem[2] - stem[0]]
     sets["tee"] = {"lines": {"line": {"points": [*middle, middle[0] + 0.7 * across[0], middle[1] + 0.7 * across[1]]}}}

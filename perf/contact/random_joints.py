@@ -1,14 +1,14 @@
-"""Joints with any of the laws, drawn at random.
+"""Random joints with any of the laws.
 
-`stress` is a typical compression, N. Under it rock of the size L slips by about N L/E before it unloads: lengths over which
-laws lose strength are drawn longer than that times the strength that is lost, so that a state exists."""
+`stress` is a typical compression N. Under this stress, rock of size L slips by about N L/E before it unloads.
+Softening lengths are drawn longer than this slip times the lost strength, so that a solution exists."""
 import math
 
 ANGLES = (2.0, 12.0)
 
 
 def any_joint(draw, stress, share=0.5):
-    """Entries of a joint; `share`: of the laws other than the first of each kind."""
+    """Returns the entries of a joint. `share` is the probability of each law other than the default."""
     rng = draw.rng
     slip = stress * draw.size / draw.modulus
     law = {"type": "joint"}
@@ -99,7 +99,7 @@ def closure(draw, law, stress, kind):
 
 
 def bond(draw, law, stress, slip):
-    """Energies of a softening bond are those that rock releases as it unloads, times 2 and more."""
+    """Adds a bond. Fracture energies are 3 to 100 times strength^2 L/E, which the rock releases as it unloads."""
     cohesion = stress * draw.power(-1.5, 0)
     if draw.chance(0.5):
         law |= {"bond": "constant cohesion", "cohesion": cohesion}

@@ -1,4 +1,4 @@
-"""Runs scenes that are drawn at random, and judges each: ok, refused rightly, failed, a violation, or without an end."""
+"""Runs random scenes and classifies each: ok, refused (correctly), failed, violation, or hang."""
 import numpy as np
 
 import contact
@@ -10,11 +10,11 @@ import random_scenes
 import violation
 from scenes import Scene
 
-EVERY = 10  # of so many scenes one is run on two ranks, too
+EVERY = 10  # one scene in EVERY also runs on two ranks
 
 
 def judge(run, status, scene):
-    """The verdict on one rank, with words where it is no good one."""
+    """Returns the verdict of a run on one rank and its messages."""
     run = contact.judge(run, status)
     worst = 0 if run.worst is None else run.worst.max()
     wrong = [f"wrong state: violation {worst:.1e}"] if worst > contact.BOUNDS["worst_violation"] else []
@@ -30,7 +30,7 @@ def judge(run, status, scene):
 
 
 def stands(scene, time):
-    """Whether tractions exist that balance the loads: always in the families that are drawn so, else by limit analysis."""
+    """True if tractions exist that balance the loads: by construction in `random_families`, else by limit analysis."""
     return scene.stem.rsplit("-", 1)[0] in random_families.FAMILIES or limit_analysis.of_scene(scene, time)
 
 
@@ -42,7 +42,7 @@ def end_of_failed_step(run, scene):
 
 
 def rank_differences(run, status, options):
-    """What is not the same on two ranks, and notes on faces."""
+    """Returns the differences between one and two ranks, and notes on faces."""
     other, other_status = contact.start(options, run.scene, 2)
     other = contact.judge(other, other_status)
     if other_status != status:
@@ -53,7 +53,7 @@ def rank_differences(run, status, options):
 
 
 def run_one(options, k):
-    """Draws, runs and judges scene k; keeps its files if it failed."""
+    """Draws, runs and judges scene k; saves its files if it failed."""
     folder = options.output / "drawn"
     drawn, refusal = random_scenes.write(options.seed, k, folder, options.binary)
     scene = folder / f"{drawn.name}.xml"
@@ -66,7 +66,7 @@ def run_one(options, k):
         verdict, what = judge(run, status, scene)
         if k % EVERY == 0 and status is not None:
             ranks, notes = rank_differences(run, status, options)
-    except Exception as error:  # files that cannot be read, say; the other scenes go on
+    except Exception as error:  # e.g. unreadable files; the other scenes continue
         verdict, what = "failed", [f"could not be judged: {type(error).__name__}: {error}"]
     run.failures = what + ranks
     parts = [""] * len(violation.PARTS) if run.worst is None else run.worst.tolist()

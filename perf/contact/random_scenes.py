@@ -1,7 +1,7 @@
-"""Scenes drawn at random: scene k of a seed depends on these two numbers alone.
+"""Random scenes. Scene k of a seed depends only on these two numbers.
 
-A scene is a tree of sections and entries, as in the XML. Its lengths and stresses are relative to the size of the domain and
-to Young's modulus, which are drawn, too."""
+A scene is a tree of sections and entries, as in the XML. Lengths and stresses are relative to the domain size
+and Young's modulus, which are random, too."""
 import math
 import random
 import subprocess
@@ -14,21 +14,21 @@ from scene_file import save
 
 ROOT = Path(__file__).resolve().parents[2]
 SIDES = ("west", "east", "south", "north", "bottom", "top")
-WORK = "slip would do work"  # in the refusal of a joint whose dilation takes more than friction bears
-ATTEMPTS = 10  # networks that cannot be meshed are drawn anew
+WORK = "slip would do work"  # part of the message that refuses a joint whose dilation exceeds friction
+ATTEMPTS = 10  # draws of a network that cannot be meshed
 
 
 @dataclass
 class Drawn:
     name: str
-    loads: str      # how it is loaded: displacement, stress, weight
+    loads: str      # displacement, stress or weight
     comment: str
-    tree: dict      # without the mesh file of a network
+    tree: dict      # sections and entries; for a network without the mesh file
     network: dict   # the section "Mesh file" of a network, or None
 
 
 class Draw:
-    """What the parts of a scene are drawn with."""
+    """Random generator and scales of one scene."""
 
     def __init__(self, rng, dim):
         self.rng, self.dim = rng, dim
@@ -37,7 +37,7 @@ class Draw:
         self.modulus = 10 ** rng.uniform(-2, 13) if wild else 10 ** rng.uniform(9, 11)
         self.strain = 10 ** rng.uniform(-6, -2.5)
         self.steps = rng.randint(2, 6)
-        self.stiffer = 1.0  # the rock's modulus over that which loads are relative to
+        self.stiffer = 1.0  # ratio of the rock's modulus to the modulus of the loads
         self.other_laws = not wild and rng.random() < 0.35
         self.tables = {}
 
@@ -45,11 +45,11 @@ class Draw:
         return self.rng.random() < p
 
     def power(self, low, high):
-        """10 to a power that is uniform."""
+        """Returns 10 to a uniformly distributed power."""
         return 10 ** self.rng.uniform(low, high)
 
     def table(self, name, values):
-        """Adds a table of these values, at the start and at the ends of the steps; returns its call."""
+        """Adds a table with these values at the start and at the step ends; returns the expression of its call."""
         self.tables[name] = {"arguments": [float(t) for t in range(len(values))], "values": [float(v) for v in values]}
         return f"{name}(t)"
 
@@ -61,7 +61,7 @@ def joint(draw):
         return any_joint(draw, draw.modulus * draw.strain)
     friction = 0.0 if draw.chance(0.1) else draw.rng.uniform(0.05, 0.9)
     law = {"type": "joint", "friction coefficient": friction}
-    if draw.chance(0.5):  # no more than friction, or sliding would yield work
+    if draw.chance(0.5):  # at most friction, otherwise sliding would produce work
         law["dilation angle"] = draw.rng.uniform(0, min(15, math.degrees(math.atan(friction))))
     if draw.chance(0.6):
         law["tangential stiffness"] = draw.modulus / draw.size * draw.power(-5, 5)
@@ -74,7 +74,10 @@ def joint(draw):
 
 
 def finish(draw, mesh, fractures, conditions, bulk=None, pressure=0.0, contrast=None):
-    """The whole scene. `pressure`: the scale of fluid pressures, 0 for none; `contrast`: of the rock of a region "other"."""
+    """Returns the complete scene.
+
+    `pressure` is the scale of fluid pressures (0: none). `contrast` is the modulus ratio of the region "other"
+    (None: no such region)."""
     rng = draw.rng
     ratio = 0.5 - draw.power(-5, -1) if draw.chance(0.1) else rng.uniform(0, 0.4)
     rock = {"type": "elastic", "Young's modulus": draw.modulus * draw.stiffer, "Poisson's ratio": ratio}
@@ -102,7 +105,7 @@ def finish(draw, mesh, fractures, conditions, bulk=None, pressure=0.0, contrast=
 # Loads
 
 def path(draw, components):
-    """Values [component][step] from 0 on, of size 1: they wander, or rise, turn about and fall, or change their sign."""
+    """Values [component][step] of size 1, beginning with 0: random, rotating or cyclic with changes of sign."""
     rng, kind = draw.rng, draw.rng.choice(("wander", "turn", "cycle"))
     first = [rng.gauss(0, 1) for _ in range(components)]
     second = [rng.gauss(0, 1) for _ in range(components)]
@@ -120,13 +123,13 @@ def path(draw, components):
 
 
 def symmetric(draw):
-    """A path of the components of a symmetric tensor, by their indices."""
+    """Path of the components of a symmetric tensor, by index pairs."""
     pairs = [(i, j) for i in range(draw.dim) for j in range(i, draw.dim)]
     return dict(zip(pairs, path(draw, len(pairs))))
 
 
 def given_displacement(draw, sides):
-    """u = G(t) x on all sides: a path of strains, a compression that stays, some rotation."""
+    """Boundary conditions u = G(t) x on all sides: a strain path, a constant compression and some rotation."""
     dim, axes = draw.dim, "xyz"[:draw.dim]
     shear = symmetric(draw)
     compression, spin = draw.rng.choice((0, 0, 1, 3)), draw.rng.uniform(-1, 1) if draw.chance(0.5) else 0
@@ -145,8 +148,9 @@ def given_displacement(draw, sides):
 
 
 def given_stress(draw, sides, supports):
-    """Tractions S(t) n on the sides, S a compression with a deviator that follows a path. `supports`: rollers on west, south
-    and bottom, or all of the lowest side held."""
+    """Tractions S(t) n on the sides; S is a compression with a deviator that follows a path.
+
+    `supports`: rollers on west, south and bottom, or the lowest side fixed."""
     dim = draw.dim
     compression = draw.modulus * draw.strain
     deviator = draw.rng.choice((0.1, 0.3, 0.6))
@@ -172,7 +176,7 @@ def given_stress(draw, sides, supports):
 
 
 def weight(draw, top, bottom):
-    """Body force, the bottom held, the sides free, and the top free, pressed by a load, moved along it under a load, or moved."""
+    """Body force with fixed bottom and free sides. The top is free, loaded, moved sideways under a load, or moved."""
     dim, rng = draw.dim, draw.rng
     load = draw.modulus * draw.strain
     bulk = {"body force": [0.0] * (dim - 1) + [-load / draw.size]}
@@ -196,7 +200,7 @@ def weight(draw, top, bottom):
 
 
 def stiffen(draw):
-    """Four in ten have rock that is stiff beside the loads, as masonry is."""
+    """Makes the rock stiff compared with the loads, as in masonry, with probability 0.4."""
     if draw.chance(0.4):
         draw.stiffer = draw.power(0, 4)
 
@@ -214,14 +218,14 @@ def shape(draw):
 
 
 def rectangle(high, cells, axis, plane, extents):
-    """Corners of a fracture by indices of mesh planes."""
+    """Returns the corners of a fracture given by indices of mesh planes."""
     lower = [high[i] * (plane if i == axis else extents[i][0]) / cells[i] for i in range(len(high))]
     upper = [high[i] * (plane if i == axis else extents[i][1]) / cells[i] for i in range(len(high))]
     return lower, upper
 
 
 def turned(draw):
-    """A rotation of the box."""
+    """Returns the entries of a random rotation of the box, or none."""
     if not draw.chance(0.4):
         return {}
     angle = {"rotation": draw.rng.uniform(0, 360)}
@@ -229,7 +233,7 @@ def turned(draw):
 
 
 def random_fractures(draw, high, cells, most, through=None):
-    """Corners of two and more fractures, each of which goes through the box in a direction with the chance `through`."""
+    """Corners of two or more fractures. `through` is the probability, per direction, that a fracture spans the box."""
     rng, dim = draw.rng, draw.dim
     through = rng.choice((0.1, 0.5, 1)) if through is None else through
     planes = [(axis, plane) for axis in range(dim) for plane in range(1, cells[axis])]
@@ -241,7 +245,7 @@ def random_fractures(draw, high, cells, most, through=None):
 
 
 def random_box(draw):
-    """Plane fractures that cross, abut and end in a box."""
+    """Plane fractures in a box that cross, abut and end."""
     rng, dim = draw.rng, draw.dim
     order = 2 if draw.chance(0.25) else 1
     cells = [rng.randint(6, 16 // order) if dim == 2 else rng.randint(3, 6 if order == 1 else 4) for _ in range(dim)]
@@ -272,7 +276,7 @@ def random_box(draw):
 
 
 def blocks(draw):
-    """A box cut into blocks by planes from side to side, under its weight or given stress; some blocks are one cell wide."""
+    """Box cut into blocks by through-going planes, under weight or given stress; some blocks are one cell wide."""
     stiffen(draw)
     rng, dim = draw.rng, draw.dim
     cells = [rng.randint(3, 10 if dim == 2 else 5) for _ in range(dim)]
@@ -288,13 +292,13 @@ def blocks(draw):
         loads = weight(draw, sides[-1], sides[-2])
         conditions, bulk, kind = loads["conditions"], loads["bulk"], "weight"
     tilt = {}
-    if kind == "weight" and draw.chance(0.3):  # the floor is a slope
+    if kind == "weight" and draw.chance(0.3):  # inclined floor
         tilt = {"rotation": rng.uniform(-35, 35)} | ({} if dim == 2 else {"rotation axis": [1.0, 0.0, 0.0]})
     return finish(draw, box(high, cells, shape(draw), fractures, **tilt), fractures, conditions, bulk), kind
 
 
 def masonry(draw):
-    """Courses of bricks in running bond, the sides free."""
+    """Courses of bricks in running bond with free sides."""
     stiffen(draw)
     rng, dim = draw.rng, draw.dim
     courses, bricks = rng.randint(3, 6), rng.randint(2, 4)
@@ -315,7 +319,7 @@ def masonry(draw):
 
 
 def layers(draw):
-    """Layers from a tenth to a hundred-thousandth of their length between two plates that come closer and move sideways."""
+    """Layers with a thickness of 1e-1 to 1e-5 of their length between two plates that approach and shear."""
     rng, dim = draw.rng, draw.dim
     count, across = rng.randint(3, 10 if dim == 2 else 5), rng.randint(4, 12 if dim == 2 else 4)
     thickness = draw.size * draw.power(-5, -1)
@@ -334,7 +338,7 @@ def layers(draw):
 # Meshes of gmsh
 
 def network(draw):
-    """Two sets of random fractures."""
+    """Two sets of random fractures in a gmsh mesh."""
     rng, dim, size = draw.rng, draw.dim, draw.size
     order = 2 if draw.chance(0.2) else 1
 
@@ -364,7 +368,7 @@ def network(draw):
 
 
 def arch(draw):
-    """Voussoirs between two springings, under their weight and a load on a part of the back."""
+    """Arch of voussoirs between two springings, under its weight and a load on one stone."""
     stiffen(draw)
     rng, size = draw.rng, draw.size
     stones, span = rng.randint(3, 11), math.radians(rng.uniform(60, 180))
@@ -383,7 +387,7 @@ def arch(draw):
     conditions = {"left": {"boundary": "left", "displacement": [0.0, 0.0]},
                   "load": {"boundary": "load", "traction": ["0", "-" + draw.table("q", [0, *values])]}}
     spread = path(draw, 2)
-    if draw.chance(0.4):  # the right springing moves
+    if draw.chance(0.4):  # moving right springing
         moved = [draw.table("d" + "xy"[i], [draw.strain * size * 0.3 * v for v in spread[i]]) for i in range(2)]
         conditions["right"] = {"boundary": "right", "displacement": moved}
     else:
@@ -403,7 +407,7 @@ def families():
 
 
 def draw_scene(seed, k, attempt=0):
-    """Scene k of a seed; further attempts are for networks that cannot be meshed, and for joints that are refused."""
+    """Draws scene k of a seed. Further attempts replace networks without a mesh and refused joints."""
     rng, all_ = random.Random(f"{seed}/{k}"), families()
     family, = rng.choices(list(all_), [share for *_, share in all_.values()])
     if attempt:
@@ -414,7 +418,8 @@ def draw_scene(seed, k, attempt=0):
 
 
 def write(seed, k, folder, binary):
-    """Writes scene k into the folder, a network with its mesh; returns what was drawn, or words on why there is no such scene."""
+    """Writes scene k into the folder, for a network with its mesh. Returns (scene, message); without an error the
+    message is empty."""
     for attempt in range(ATTEMPTS):
         drawn = draw_scene(seed, k, attempt)
         refusal = write_one(drawn, folder, binary)
@@ -424,7 +429,7 @@ def write(seed, k, folder, binary):
 
 
 def write_one(drawn, folder, binary):
-    """Words on why there is no mesh, or why the joints are refused."""
+    """Writes one scene. Returns the error message of the mesh generator or of the joint check, or an empty string."""
     scene = folder / f"{drawn.name}.xml"
     if drawn.network:
         mesh, network_scene = scene.with_suffix(".msh"), scene.with_suffix(".network.xml")

@@ -1,6 +1,6 @@
-"""The pieces of rock between fractures, read from the description of a box or from the mesh of a network.
+"""Blocks of rock between fractures, from the description of a box or from the mesh of a network.
 
-Independent of the program: it knows the scene and the .msh file alone."""
+Independent of the program: only the scene and the .msh file are read."""
 import math
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ SIDES = ("west", "east", "south", "north", "bottom", "top")
 
 @dataclass
 class Rock:
-    """Cells with the facets around them. `groups` has the facets [n, corners] of each boundary and fracture by its name."""
+    """Cells with their facets. `groups` contains the facets [n, corners] of each boundary and fracture by name."""
     points: np.ndarray   # [n, dim]
     facets: np.ndarray   # [cells, facets of a cell, corners]
     volumes: np.ndarray  # [cells]
@@ -29,7 +29,7 @@ class Face:
     centre: np.ndarray
     area: float          # length in 2D
     normal: np.ndarray   # from cells[0] to cells[1], outward on a boundary
-    pieces: tuple        # of the cells beside it: one, or two
+    pieces: tuple        # blocks of the adjacent cells: one or two
 
 
 @dataclass
@@ -41,7 +41,8 @@ class Pieces:
 
 
 def box(input_):
-    """The mesh of the section Mesh, in squares or cubes; faces are triangles where cells are tetrahedra."""
+    """Returns the mesh of the section `Mesh` with rectangular cells; facets are triangles if the scene has
+    tetrahedra."""
     low, high, cells = (np.array(input_.numbers("Mesh", name)) for name in ("lower corner", "upper corner", "cells"))
     dim, size = len(low), (high - low) / cells
     shape = cells.astype(int) + 1
@@ -70,7 +71,7 @@ def box(input_):
 
 
 def _facets_of_block(dim, halved):
-    """Facets of a square or cube by its corners: bit i is set where a corner is the upper one in direction i."""
+    """Facets of a rectangle or cuboid by corner numbers; bit i is set at the upper end of direction i."""
     if dim == 2:
         return np.array([[0, 2], [1, 3], [0, 1], [2, 3]])
     squares = [[side << i, side << i | 1 << j, side << i | 1 << j | 1 << k, side << i | 1 << k]
@@ -81,7 +82,7 @@ def _facets_of_block(dim, halved):
 
 
 def rotation(input_, dim):
-    """The matrix of `rotation` about `rotation axis`, counter-clockwise."""
+    """Matrix of `rotation` about `rotation axis`, counter-clockwise."""
     angle = math.radians(input_.number("Mesh", "rotation", default=0))
     axis = [0, 0, 1] if input_.text("Mesh", "rotation axis") is None else input_.numbers("Mesh", "rotation axis")
     x, y, z = np.array(axis) / np.linalg.norm(axis)
@@ -90,7 +91,7 @@ def rotation(input_, dim):
 
 
 def simplices(path):
-    """A mesh as apps/mesh writes it: version 2.2 of gmsh, binary, triangles or tetrahedra."""
+    """Reads a mesh written by apps/mesh: binary gmsh 2.2 with triangles or tetrahedra."""
     data = path.read_bytes()
 
     def section(name):
@@ -124,7 +125,7 @@ def simplices(path):
 
 
 def pieces(rock, fractures):
-    """Cells that hang together through facets that lie on none of these fractures."""
+    """Returns the blocks: sets of cells connected through facets on none of these fractures."""
     cells, per_cell, corners = rock.facets.shape
     keys, facet = np.unique(np.sort(rock.facets.reshape(-1, corners), axis=1), axis=0, return_inverse=True)
     number = {tuple(key): k for k, key in enumerate(keys)}

@@ -1,9 +1,9 @@
-"""Writes a scene, a tree of sections and entries, as XML."""
+"""Writes a scene, given as a tree of sections and entries, as XML."""
 import xml.etree.ElementTree as xml
 
 
 def written(value):
-    """Type and value of an entry."""
+    """Returns the XML type and text of an entry."""
     if isinstance(value, (list, tuple)):
         kinds = {written(v)[0] for v in value}
         kind = "string" if "string" in kinds else "double" if "double" in kinds else "int"

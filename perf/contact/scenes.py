@@ -1,4 +1,4 @@
-"""The scenes of the benchmark: a file of xml/ each, with entries replaced as by --set, and what is known of the answer."""
+"""Scenes of the benchmark: files of xml/ with replaced entries, as by --set, and known properties of the solution."""
 from dataclasses import dataclass
 from typing import Callable
 
@@ -14,13 +14,13 @@ class Scene:
     name: str
     file: str                # under xml/
     sets: tuple = ()
-    exact: Callable = None   # of a run: its largest relative error
+    exact: Callable = None   # function of a run that returns its largest relative error
     tolerance: float = 1e-8  # of that error
-    newton: int = 0          # most Newton iterations in any step, if that is stated
-    refused: str = ""        # a pattern: the run must end with such words
-    group: str = ""          # scenes of one group need the same Newton iterations
-    quick: bool = False      # belongs to the quick third
-    several: bool = False    # equilibria: the one that is found may depend on the number of ranks
+    newton: int = 0          # largest allowed number of Newton iterations per step; 0: not checked
+    refused: str = ""        # pattern of the expected error message; the run must fail
+    group: str = ""          # scenes of one group must need the same Newton iterations
+    quick: bool = False      # included in --quick
+    several: bool = False    # several equilibria: the result may depend on the number of ranks
 
 
 def joint(**entries):
@@ -29,22 +29,22 @@ def joint(**entries):
 
 
 def pressure(names, text="p(t)"):
-    """A fluid pressure in the fractures of these names."""
+    """Entries for a fluid pressure in these fractures."""
     return tuple(f"Fractures.{name}.fluid pressure={text}" for name in names)
 
 
 def table(name, *points):
-    """Points (t, value) of a table."""
+    """Entries of a table with points (t, value)."""
     times, values = ("{" + ", ".join(map(str, row)) + "}" for row in zip(*points))
     return f"Tables.{name}.arguments={times}", f"Tables.{name}.values={values}"
 
 
 def held(end, **loads):
-    """So many steps of length 1; loads, by the names of their tables, that rise in the first and then stay."""
+    """Entries for `end` steps of length 1, with tables of loads that rise in the first step and then stay constant."""
     return sum((table(name, (0, 0), (1, load), (end, load)) for name, load in loads.items()), (f"Time.end={end}", f"Time.steps={end}"))
 
 
-SOFT_CLOSURE = dict(closure="1e-2", normal="1")     # relative to E = 1 of a domain of size 1
+SOFT_CLOSURE = dict(closure="1e-2", normal="1")     # relative to E = 1 and a domain of size 1
 STIFF_CLOSURE = dict(closure="1e-4", normal="1e3")
 NO_EQUILIBRIUM = r"no equilibrium"
 FREE = r"(free to move|can move|nothing holds|singular mode)"
@@ -70,7 +70,7 @@ def networks():
     all_of_it = joint(stiffness=10, dilation=5, closure="1e-3", normal=10)
     yield Scene("network X all of it", x, all_of_it, quick=True)
     yield Scene("network X gap 1e-12", x, joint(gap="1e-12"))
-    yield Scene("network X gap -1", x, joint(gap=-1))  # so wide that no faces meet
+    yield Scene("network X gap -1", x, joint(gap=-1))  # gap without contact
     all_fractures = pressure(f"f{k:02}" for k in range(1, 16)) + ("Tables.p.arguments={0, 1, 2, 3, 4}",
         "Tables.p.values={0, 0, 0.005, 0.015, 0.045}", "Tables.ax.values={0, 0.01, 0.01, 0.01, 0.01}",
         "Tables.ay.values={0, 0.02, 0.02, 0.02, 0.02}", "Tables.sx.values={0, 0.01, 0.01, 0.01, 0.01}")
@@ -94,7 +94,7 @@ def networks():
     yield Scene("network 3D all of it", box, joint(stiffness=10, dilation=10, closure="1e-3", normal=10))
     injection = table("p", (0, 0), (1, 0), (7, 0.02), (10, 0)) + held(10, az=0.01, sx=0.008, sy=0.004)
     yield Scene("network 3D injection", box, pressure(("f05", "f07"), "p(t)*(1 + (4 - z)/20)") + injection)
-    cells = "contact/one_cell_blocks_3d.xml"  # some pieces of rock are single cells, held at six points
+    cells = "contact/one_cell_blocks_3d.xml"  # some blocks are single cells with six fixed points
     yield Scene("one-cell blocks 3D", cells, several=True)
     yield Scene("one-cell blocks 3D mu=0", cells, joint(friction=0))
     yield Scene("one-cell blocks 3D all of it", cells, joint(stiffness=10, dilation=10, closure="1e-3", normal=10), several=True)
@@ -115,7 +115,7 @@ def blocks():
         yield Scene(f"masonry T {dim}D", f"contact/masonry_wall_{dim}d.xml", quick=True)
         yield Scene(f"masonry T {dim}D mu=0.1", f"contact/masonry_wall_{dim}d.xml", joint(friction=0.1))
         for contrast in ("1e-6", "1e-3", "1e3", "1e6"):
-            # the tolerance is relative to the stress of the stiff blocks, the violation to that of the soft ones
+            # The tolerance is relative to the stress of the stiff blocks, the violation to the stress of the soft ones.
             fine = ("Solver.tolerance=1e-12",) if contrast == "1e-6" else ()
             if dim == 2 or contrast in ("1e-6", "1e6"):
                 yield Scene(f"contrast {dim}D {contrast}", f"contact/masonry_cross_{dim}d.xml",
@@ -130,14 +130,14 @@ def blocks():
 
 
 def layers(h):
-    """Entries for layers of this thickness in layers_2d.xml."""
+    """Entries for layers of thickness h in layers_2d.xml."""
     corners = tuple(f"Mesh.fractures.joint {k}.{corner} corner={{{x}, {k * h}}}" for k in range(1, 5) for corner, x in (("lower", 0), ("upper", 1)))
     return corners + (f"Mesh.upper corner={{1, {5 * h}}}", f"Tables.shear.values={{0, 0, {0.05 * h}, {-0.05 * h}}}",
                       f"Tables.press.values={{0, {5e-4 * h}, {5e-4 * h}}}")
 
 
 def extremes():
-    """One parameter of a block changed: lambda_t and lambda_n to 1e-8, at most 20 iterations."""
+    """Variations of one parameter of a block. lambda_t and lambda_n must be exact to 1e-8 within 20 iterations."""
     tiny = ("Tables.tangential.values={0, 1}", "Tables.normal.values={0, -1}") + joint(friction=1, dilation=0, gap=0, closure=0)
     cases = {"K_t=1e-12": joint(stiffness="1e-12"), "K_t=1e12": joint(stiffness="1e12"), "K_n=1e-12": joint(normal="1e-12"),
              "K_n=1e12": joint(normal="1e12"), "Du=1e-12": joint(closure="1e-12"), "mu=0": joint(friction=0),
@@ -159,7 +159,7 @@ def extremes():
 
 
 def units():
-    """The same scene in units of length (m) and stress (Pa): the same answer in the same number of iterations."""
+    """One scene in several units of length (m) and stress (Pa). Solution and iterations must agree."""
     systems = {"m Pa": (1, 1), "km GPa": (1e3, 1e9), "mm MPa": (1e-3, 1e6), "um Pa": (1e-6, 1)}
 
     def sets(length, stress, high, corners, loads):
@@ -185,14 +185,14 @@ def units():
 
 
 def patches():
-    """Uniform stress across inclined and crossing fractures, also on cells of aspect ratio 1e4 and 1e6."""
+    """Uniform stress across inclined and crossing fractures, also with cells of aspect ratio 1e4 and 1e6."""
     stick = exact.uniform([[-0.5, 0.1], [0.1, -0.3]], [(0, 1)], [0])
     slip = exact.uniform([[-0.5, 0.18], [0.18, -0.3]], [(0, 1)], [0.25 / 0.18])
     crossing = [[-0.8, 0.15], [0.15, -0.5]]
     box = "verification/inclined_box_{}d.xml"
 
     def thin(*axes):
-        """The box of the inclined patch, made thin along some axes."""
+        """Entries that scale the box of the inclined patch along its axes."""
         def corner(values):
             return "{" + ", ".join(str(value * size) for value, size in zip(values, axes)) + "}"
         low, high = [-1] * len(axes), [1] * len(axes)
@@ -212,7 +212,7 @@ def patches():
 
 
 def no_answer():
-    """Blocks that can move freely, and forces without equilibrium; each next to a load that can be borne."""
+    """Floating blocks and forces without equilibrium, each with a similar load that has an equilibrium."""
     for dim in (2, 3):
         slope, resting = f"contact/incline_{dim}d.xml", f"contact/resting_{dim}d.xml"
         turn = "Mesh.rotation=" if dim == 2 else "Mesh.rotation=-"
@@ -225,7 +225,7 @@ def no_answer():
 
 
 def all_change():
-    """Stick, slip, open, stick on several meshes: at most 10 iterations a step."""
+    """Change from stick to slip, open and stick on several meshes, with at most 10 iterations per step."""
     for dim, meshes in ((2, ("2, 2", "8, 8", "32, 32")), (3, ("2, 2, 2", "6, 6, 6", "4, 4, 16"))):
         for cell in ("quadrilateral", "triangle") if dim == 2 else ("hexahedron", "tetrahedron"):
             for cells in meshes:
@@ -244,7 +244,7 @@ def drift():
 
 
 def histories():
-    """Laws that remember: what they keep of faces is checked as well."""
+    """Laws with history variables, which are checked, too."""
     for name in ("damage_cycles_2d", "damage_turns_3d"):
         yield Scene(name.replace("_", " "), f"contact/{name}.xml", quick=True)
         yield Scene(f"{name.replace('_', ' ')}, work", f"contact/{name}.xml",

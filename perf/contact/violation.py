@@ -1,8 +1,9 @@
-"""How far a state of the fractures is from the laws of contact and friction, computed from what a run wrote.
+"""Violation of the contact and friction laws by a state of the fractures, computed from the output of a run.
 
-The conditions are (10)-(14) of Wollmann (2024); see docs/model/model.md. Nothing of the solver is used: jumps,
-tractions, plastic jumps, states and histories come from fractures.pvd, the laws of the joints from effective_input.xml
-(joint_laws.py). Where a law has a history, that of the end of the step counts, and how it moved in the step is checked."""
+The conditions are (10)-(14) of Wollmann (2024); see docs/model/model.md. The check uses nothing of the solver.
+Jumps, tractions, plastic jumps, states and histories are read from fractures.pvd, the joint laws
+(joint_laws.py) from effective_input.xml. Laws with a history are evaluated with its value at the end of the
+step; the change of the history in the step is checked, too."""
 import math
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass, field, fields
@@ -10,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-import read  # of apps/plot
+import read  # in apps/plot
 from joint_laws import JointLaw
 
 OPEN, STICK, SLIP = 0, 1, 2
@@ -19,13 +20,13 @@ HISTORIES = ("accumulated slip", "opening by slip", "largest compression", "dama
              "error of damage history", "damage of friction", "damage of dilation")
 FIRST_KINDS = {"friction": "Coulomb", "closure": "Barton-Bandis", "dilation": "constant angle", "tangential elasticity": "linear",
                "bond": "none", "damage": "none", "damage driver": "slip"}
-TINY = 1e-300  # scales of a run in which nothing moves
-BULK_STEPS = 20  # of the steps written, as many are looked at for the largest displacement
+TINY = 1e-300  # scale of a run without displacements
+BULK_STEPS = 20  # number of written steps that are searched for the largest displacement
 
 
 @dataclass
 class Joint:
-    """With the laws that exact solutions and energies are known for."""
+    """Joint with the laws that have exact solutions and known energies."""
     stiffness: float
     friction: float
     dilation: float  # tan(theta)
@@ -34,7 +35,7 @@ class Joint:
     normal_stiffness: float
 
     def closed_gap(self, slip, normal):
-        """g of (14) for a plastic jump of this size and a normal traction."""
+        """Gap g of (14) for a slip (size of the plastic jump) and a normal traction."""
         load = np.maximum(-normal, 0)
         closing = self.closure * load / (self.closure * self.normal_stiffness + load) if self.closure > 0 else 0
         return self.gap + self.dilation * slip - closing
@@ -45,7 +46,7 @@ def parsed(value, default=None):
 
 
 class Input:
-    """What effective_input.xml says."""
+    """Content of effective_input.xml."""
 
     def __init__(self, path):
         self.root = xml.parse(path).getroot()
@@ -55,7 +56,7 @@ class Input:
 
     @cached_property
     def joints(self):
-        """[fracture]; an error where a joint has other laws."""
+        """[fracture] Joints; raises ValueError for laws that `Joint` does not have."""
         return [self._joint(self.text("Fractures", name, "material")) for name in self.names("Fractures")]
 
     def _list(self, *path):
@@ -82,7 +83,7 @@ class Input:
         return [float(word) for word in self.text(*path).strip("{} ").split(",")]
 
     def rock(self, name):
-        """E, nu, G and lambda of a material that is given by two of these."""
+        """E, nu, G and lambda of a material, computed from the two given constants."""
         given = {key: self.number("Materials", name, long) for key, long in (
             ("E", "Young's modulus"), ("nu", "Poisson's ratio"), ("G", "shear modulus"), ("lam", "Lame's first parameter"))}
         if given["E"] is not None:
@@ -94,7 +95,7 @@ class Input:
         return given
 
     def of_singles(self, singles):
-        """The laws of single fractures as results.json lists them, entries of their own included."""
+        """Joint laws of single fractures as listed in results.json, with their individual entries."""
         shared = {name: self._law(self.text("Fractures", name, "material")) for name in self.names("Fractures")}
         own = [one.get("own_joint", {}) for one in singles]
         return [self._law(entries["material"], entries) if entries else shared[one["set"]] for one, entries in zip(singles, own)]
@@ -117,7 +118,7 @@ class Input:
 
 @dataclass
 class Faces:
-    """The fracture faces of one step, sorted by fracture and place. Vectors have the normal component first."""
+    """Fracture faces of one step, sorted by fracture and place. Vectors have the normal component first."""
     time: float
     centre: np.ndarray
     fracture: np.ndarray
@@ -125,11 +126,11 @@ class Faces:
     jump: np.ndarray
     plastic: np.ndarray
     traction: np.ndarray
-    pressure: np.ndarray = field(default=None)  # of the fluid, where there is some
-    told: dict = field(default_factory=dict)  # the fields of histories, 0 where a joint has none
-    bound: np.ndarray = field(default=None)  # of friction and bond
+    pressure: np.ndarray = field(default=None)  # of the fluid; 0 without fluid
+    told: dict = field(default_factory=dict)  # history fields; 0 for joints without history
+    bound: np.ndarray = field(default=None)  # of the shear traction, by friction and bond
     distance: np.ndarray = field(default=None)  # w_n - g
-    strength: np.ndarray = field(default=None)  # tension that a bond bears
+    strength: np.ndarray = field(default=None)  # tensile strength of a bond
 
     @property
     def normal(self):
@@ -140,7 +141,7 @@ class Faces:
         return np.linalg.norm(self.plastic[:, 1:], axis=1)
 
     def on(self, which):
-        """Some of the faces, before their bounds are known."""
+        """Returns a subset of the faces, without the bounds."""
         return Faces(self.time, **{f.name: getattr(self, f.name)[which] for f in fields(Faces)[1:8]},
                      told={name: values[which] for name, values in self.told.items()})
 
@@ -151,13 +152,13 @@ class Faces:
 
 
 def sorted_by_place(centre, fracture, extent):
-    """The order of faces in Faces, which does not depend on the number of ranks."""
+    """Returns the order of faces in `Faces`, which does not depend on the number of ranks."""
     place = np.round(centre / extent * 1e8).astype(np.int64)
     return np.lexsort((place[:, 2], place[:, 1], place[:, 0], fracture))
 
 
 def faces(time, file, laws, extent, group="fracture"):
-    """`group`: the array with the numbers of the laws, which Faces has as fractures."""
+    """Reads the faces of one step. `group` names the array with the law numbers, stored as `fracture`."""
     grid = read.grid(file)
     data = read.arrays(grid.GetCellData())
     points = read.vtk_to_numpy(grid.GetPoints().GetData())
@@ -183,7 +184,8 @@ class Scales:
 
 
 def history(directory, input_, laws=None):
-    """The faces of every written step, and the scales of the run; `laws`: of single fractures, in place of sets."""
+    """Returns the faces of every written step, and the scales of the run. `laws`: laws of single fractures instead
+    of sets."""
     bulk = read.written_steps(directory, "bulk")
     grid = read.grid(bulk[0][1])
     bounds = np.reshape(grid.GetBounds(), (3, 2))
@@ -200,9 +202,10 @@ def history(directory, input_, laws=None):
 
 
 def violation(step, before, scales, laws=(), path=None):
-    """The largest violation over the faces, one number for each of PARTS, relative to the scales. `before` are the faces
-    at the start of the step, None where the increment of the plastic jump is not known; the laws, [fracture], and the path
-    so far are for histories."""
+    """Returns the largest violation over the faces for each of PARTS, relative to the scales.
+
+    `before`: the faces at the start of the step; None if the increment of the plastic jump is unknown. `laws`
+    [fracture] and `path`, the plastic jumps up to this step, are used for histories."""
     shear = np.linalg.norm(step.traction[:, 1:], axis=1)
     load = np.maximum(-step.traction[:, 0], 0) / scales.traction
     worst = [(-step.distance).max() / scales.length, (step.normal - step.strength).max() / scales.traction,
@@ -218,9 +221,11 @@ def violation(step, before, scales, laws=(), path=None):
 
 
 def _wrong_increment(step, before, shear, scales):
-    """The part of the plastic increment that (11) forbids: all of it on faces that stick, on those that slip what is not along
-    the traction; also the increment where the shear is below the bound. Open faces move freely, and so do faces without
-    friction and those that touch without load: an increment counts no more than the load that forbids it."""
+    """Returns the largest part of the plastic increment that (11) forbids.
+
+    On sticking faces this is the whole increment. On slipping faces it is the component that is not along the
+    traction, or the increment if the shear is below the bound. Open faces may move freely, as may frictionless
+    faces and touching faces without load: an increment counts at most as much as the load that forbids it."""
     increment = step.plastic[:, 1:] - before.plastic[:, 1:]
     size = np.linalg.norm(increment, axis=1) / scales.length
     along = step.traction[:, 1:] / np.where(shear > 0, shear, 1)[:, None]
@@ -232,16 +237,18 @@ def _wrong_increment(step, before, shear, scales):
 
 
 def largest(directory, results, input_):
-    """The faces of each step, the violation of the run by parts, and how many steps were not judged by direction."""
+    """Returns the faces of each step, the scales, the violation of the run by PARTS, and the number of steps
+    without checks of direction."""
     singles = results.get("single_fractures", [])
     own = input_.of_singles(singles) if any(one.get("own_joint") for one in singles) else None
     laws = input_.laws if own is None else own
     steps, scales = history(directory, input_, own)
     numbered = list(enumerate(results["steps"]))
-    at = {round(step["time"], 9): k for k, step in reversed(numbered)}  # one that failed at once has the time of the one before
+    # an immediate failure has the time of the previous step
+    at = {round(step["time"], 9): k for k, step in reversed(numbered)}
     worst, skipped, last, path = np.zeros(len(PARTS)), 0, -1, []
     for k, step in enumerate(steps):
-        if round(step.time, 9) not in at:  # the run was ended before results.json told of it
+        if round(step.time, 9) not in at:  # the run ended before results.json contained the step
             break
         number = at[round(step.time, 9)]
         before = steps[k - 1] if k else None
@@ -256,7 +263,7 @@ def largest(directory, results, input_):
 
 
 def _segment(step, before, laws, path):
-    """Of the path of plastic jumps, and what a unit of it counts: nothing on faces that are apart."""
+    """Returns (plastic jump from, to, weight k) of one step of the path; the weight is 0 on open faces."""
     weight = np.zeros(len(step.state))
     for k, law in enumerate(laws):
         on = step.fracture == k
@@ -266,13 +273,13 @@ def _segment(step, before, laws, path):
 
 
 def _path_of(path, on):
-    """That of some of the faces; None where the path is not known."""
+    """Restricts the path to some faces; None if the path is unknown."""
     return None if path is None else [tuple(part[on] for part in segment) for segment in path]
 
 
 def differing(one, other, scales, tolerance=1e-9):
-    """Faces whose states differ between two runs of the same scene: (time, place, states, distance from the limit),
-    and whether that distance is within the tolerance."""
+    """Returns the faces with different states in two runs of a scene: (time, place, states, distance from the
+    limit, whether the distance is within the tolerance)."""
     found = []
     for a, b in zip(one, other):
         for f in np.flatnonzero(a.state != b.state):
