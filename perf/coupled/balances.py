@@ -1,34 +1,36 @@
-"""The balances of fluid and energy of a run, from the files that it wrote and docs/model/flow.md and heat.md.
+"""Balances of fluid and energy of a run, from its output files and docs/model/flow.md and heat.md.
 
-Of fluid, all volumes being at reference conditions, the rate of what rock and fractures store is what comes in:
+All fluid volumes are at reference conditions. The rate of the fluid stored in rock and fractures equals the
+inflow:
 
     sum_K R_K + sum_F R_F + alpha dV/dt = inflows + rates of wells + sources
 
-with R of a cell d(V (phi + c (p - p_i)) e d)/dt - V beta dT/dt and of a face d(A a e d)/dt - beta_f A m dT/dt, V the volume
-that the walls of the rock have given way, e and d the factors of the density by pressure and temperature. Rates are those of
-implicit Euler or BDF2. Of energy:
+with R of a cell d(V (phi + c (p - p_i)) e d)/dt - V beta dT/dt and of a face d(A a e d)/dt - beta_f A m dT/dt.
+Here V is the volume change due to the displacement of the rock surfaces; e and d are the density factors for
+pressure and temperature. Rates are those of implicit Euler or BDF2. For energy:
 
     sum_K (C V dT/dt + c T_K R_K) + sum_F (C_F A (d(m T)/dt - T dm/dt) + c T_F R_F) = heat_inflows + c sum_b Q_b T_b + heat of
     wells + c sum (sources) T
 
-with the capacity c of the fluid. Temperatures count from one of the scene, so that the balance of fluid times a temperature
-cannot hide an error. The files do not say into which of the two cells at a fracture face the fluid goes that the face's own
-deformation displaces: with Biot's coefficient above 0 the difference in heat is bounded, and the bound is allowed."""
+with the heat capacity c of the fluid. Temperatures are relative to a temperature of the scene, so that the
+fluid balance times a temperature cannot hide an error. The files do not contain to which of its two cells a
+fracture face displaces fluid by its bubble deformation. With a Biot coefficient above 0, the difference in heat
+is bounded, and this bound is subtracted."""
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from joint_laws import JointLaw  # of perf/contact
+from joint_laws import JointLaw  # in perf/contact
 from violation import FIRST_KINDS, HISTORIES
 from written import number, numbers
 
-ROUNDING = 1e-8  # of the stored fluid and heat per step: 1e-6 of that is their rounding over all cells
-LONGER = 2.4  # a step so many times as long as that before is one of implicit Euler
+ROUNDING = 1e-8  # relative to stored fluid and heat per step; 1e-6 of it is their rounding over all cells
+LONGER = 2.4  # a step longer than LONGER times the previous one uses implicit Euler
 
 
 @dataclass
 class Balance:
-    """Of one step: how much more is stored than comes in, by the scale of the run, and what may be unknown of it."""
+    """Balance of one step: surplus (stored minus inflow), scale of the run, and bound of the unknown part."""
     time: float
     surplus: float
     scale: float
@@ -37,18 +39,18 @@ class Balance:
 
 @dataclass
 class Stored:
-    """What is stored at the end of a step. Arrays by cell or by face."""
+    """Stored fluid and heat at the end of a step. Arrays by cell or by face."""
     pores: np.ndarray        # V (phi + c (p - p_i)) e d, m^3
     faces: np.ndarray        # A m, m = a e d, m^3
-    rock: np.ndarray         # alpha times the volume that the rock has made, m^3, by cell as far as nodes say
-    bubbles: np.ndarray      # the rest: of what faces have opened beyond their nodes
+    rock: np.ndarray         # alpha times the volume gain of the rock by its nodes, m^3, by cell
+    bubbles: np.ndarray      # remaining volume: opening of faces beyond their nodes
     T: np.ndarray = None
     T_faces: np.ndarray = None
 
 
 @dataclass
 class Constants:
-    """Of the scene, by cell and by face."""
+    """Constants of the scene, by cell and by face."""
     volume: np.ndarray
     area: np.ndarray
     porosity: np.ndarray
@@ -65,7 +67,7 @@ class Constants:
 
 
 class Balances:
-    """Those of the steps of a run. `notes` says why something is not checked."""
+    """Balances of the steps of a run. `notes` contains the reasons for skipped checks."""
 
     def __init__(self, written):
         self.run, self.notes = written, []
@@ -81,10 +83,10 @@ class Balances:
         self.T_i = written.value(written.text("Heat", "initial temperature", default="0")) if self.heats else 0.0
         self.k = self._constants()
 
-    # ---- what the scene says --------------------------------------------------------------------------------------------
+    # ---- constants of the scene ------------------------------------------------------------------------------------
 
     def _of_cells(self, name, default=0.0):
-        """[cell] An entry of the rock."""
+        """[cell] Entry of the rock material."""
         run, bulk = self.run, self.run.states[0].bulk
         names = self._rock_names()
         values = {}
@@ -94,7 +96,7 @@ class Balances:
         return np.array([values[int(k)] for k in bulk.cell_data["material"]])
 
     def _rock_names(self):
-        """By the number of the region: the rest of the rock is the last... of "bulk"."""
+        """Material names by region number: the material of `Bulk` first, then those of the regions."""
         run = self.run
         regions = sorted(run.entries.get("Mesh", {}).get("regions", {}))
         given = {name: run.entries.get("Regions", {}).get(name, {}).get("material") for name in regions}
@@ -146,7 +148,7 @@ class Balances:
         return np.array([self.run.value(text, 0.0, x) for x in centres])
 
     def _start_opening(self, law, fractures, on, pressure):
-        """[face] Of faces that the initial stress loads: where the law has them touch; else 0."""
+        """[face] Contact gap of faces under the initial stress; 0 without initial stress."""
         stress = self.run.text("Bulk", "initial stress")
         if self.rigid or stress in ("", "{}"):
             return np.zeros(on.sum())
@@ -171,7 +173,7 @@ class Balances:
         return e * water_density(T) / water_density(self.T_ref)
 
     def stored(self, state):
-        """At the end of a step; at the start of the run for None."""
+        """Stored quantities at the end of a step; `state` None: at the start of the run."""
         k = self.k
         rock, bubbles = np.zeros_like(k.volume), np.zeros_like(k.area)
         if state is None:
@@ -192,7 +194,8 @@ class Balances:
         return Stored(pores, k.area * m, rock, bubbles, T, T_faces)
 
     def made_room(self, displacement, opened):
-        """[cell], [face] alpha times the volume that cells have gained, m^3: by their nodes, and what faces have opened beyond."""
+        """[cell], [face] alpha times the volume gain of cells, m^3: by their nodes, and by the opening of faces
+        beyond the nodes."""
         faces, alpha = self.run.faces, self.k.alpha
         swept = faces.swept(displacement)
         by_nodes = np.bincount(faces.cell, swept, len(self.k.volume))
@@ -200,7 +203,7 @@ class Balances:
         return alpha * by_nodes, -alpha * (opened + np.bincount(faces.fracture[on], swept[on], len(opened)))
 
     def aperture(self, opening):
-        """[face] For which fluid is stored."""
+        """[face] Aperture that stores fluid."""
         k = self.k
         least = k.least if self.flows else 1e-9 * np.ptp(self.run.states[0].bulk.points, axis=0).max()
         return np.maximum(k.start_aperture + opening - k.start_opening, least)
@@ -211,7 +214,7 @@ class Balances:
         return rate if older is None or beta == 0 else rate - beta * (old - older)
 
     def factors(self, number, times):
-        """nu, beta of the step; None where a step was cut, so that they are not known."""
+        """Factors (nu, beta) of the rate in this step; None if they are unknown because a step was bisected."""
         bdf = self.run.text("Time", "scheme") == "BDF2"
         dt = times[number + 1] - times[number]
         if self.steps[number]["substeps"] != 1:
@@ -225,7 +228,7 @@ class Balances:
         return (1 / dt, 0.0) if w >= LONGER else ((1 + 2 * w) / (1 + w) / dt, w * w / (1 + w) / dt)
 
     def fluid_rates(self, factor, now, old, older):
-        """[cell], [face], and what bubbles of faces make room for in the rock [face]: R."""
+        """[cell], [face] fluid rates R, and [face] the rate by bubble deformation of the rock."""
         cells = self.rates(factor, now.pores, old.pores, older and older.pores)
         faces = self.rates(factor, now.faces, old.faces, older and older.faces)
         cells = cells + self.rates(factor, now.rock, old.rock, older and older.rock)
@@ -247,7 +250,7 @@ class Balances:
     # ---- balances -------------------------------------------------------------------------------------------------------
 
     def steps_with_states(self):
-        """(number, factors, state, stored now, before, before that) of the steps whose rates are known."""
+        """Yields (number, factors, state, stored now, before, and before that) of the steps with known rates."""
         times = [self.run.number("Time", "start", default=0)] + [step["time"] for step in self.steps]
         if len(self.run.states) != len(self.steps):
             self.notes.append("not all steps are written: no balances")
@@ -262,7 +265,7 @@ class Balances:
             yield number, factor, state, stored[number + 1], stored[number], older
 
     def sources(self, t):
-        """Of the fluid in [cell], [face], m^3/s."""
+        """Fluid sources of [cell] and [face], m^3/s."""
         run, first = self.run, self.run.states[0]
         of_rock = np.full_like(self.k.volume, run.value(run.text("Flow", "source", default="0"), t)) * self.k.volume
         of_faces = np.zeros_like(self.k.area)
@@ -272,7 +275,7 @@ class Balances:
         return of_rock, of_faces * self.k.area
 
     def of_fluid(self):
-        """[step] Balance"""
+        """[step] Balance of fluid."""
         all_ = []
         if not self.flows:
             return all_
@@ -297,11 +300,11 @@ class Balances:
         return all_
 
     def in_rock(self, now):
-        """alpha V u/L, m^3, for the largest volume that a cell has made."""
+        """alpha V u/L, m^3, for the largest volume change of a cell."""
         return len(now.rock) * abs(now.rock).max(initial=0) + abs(now.bubbles).sum()
 
     def of_energy(self):
-        """[step] Balance; none where what the fluid takes along through a boundary is not known."""
+        """[step] Balance of energy; empty if the temperature of fluid that crosses a boundary is unknown."""
         all_ = []
         if not self.heats:
             return all_
@@ -333,7 +336,7 @@ class Balances:
         return all_
 
     def carried_through_boundaries(self, step, t, reference):
-        """[boundary] c Q (T - reference), W; None where the temperature of one is not known."""
+        """[boundary] c Q (T - reference), W; None if the temperature of a boundary is unknown."""
         parts = []
         for boundary, flow in step.get("inflows", {}).items() if self.flows else ():
             held = {self.run.value(c["temperature"], t) for c in self.run.entries["Boundary conditions"].values()
@@ -345,7 +348,7 @@ class Balances:
         return parts
 
     def friction(self, number, state, factor):
-        """The power of friction less that which lifts the sides, W."""
+        """Frictional power minus the work rate of dilation against the normal traction, W."""
         if self.run.text("Heat", "heat of friction") != "true" or state.fractures is None or self.rigid:
             return 0.0
         now, before = self.plastic(state), self.plastic(self.run.states[number - 1] if number else None)
@@ -353,7 +356,7 @@ class Balances:
         return float((self.k.area * (state.fractures.cell_data["traction local"] * (now - before)).sum(axis=1)).sum()) * dt_inverse
 
     def plastic(self, state):
-        """[face, 3] The plastic jump, the normal one being that by which slip lifts the sides."""
+        """[face, 3] Plastic jump; its normal component is the dilation."""
         data = state and state.fractures.cell_data
         if data is None:  # at the start
             return np.zeros((len(self.k.area), 3))
@@ -365,27 +368,26 @@ class Balances:
         return p
 
     def beside(self, T):
-        """[fracture face] The mean of the cells on both sides."""
+        """[fracture face] Mean of the cells on both sides."""
         faces = self.run.faces
         on = faces.fracture >= 0
         return np.bincount(faces.fracture[on], T[faces.cell[on]], len(self.k.area)) / 2
 
     def unknown(self, now, bubbles):
-        """A bound on the heat of the fluid in the part of the rock's deformation that the files do not assign to one side of a
-        face, W."""
+        """Bound, W, on the heat of the fluid displaced by bubble deformation, whose cell is unknown."""
         temperatures = np.concatenate([now.T, now.T_faces, [self.T_i]])
         return float(self.c * np.ptp(temperatures) * abs(bubbles).sum())
 
 
 def water_density(T):
-    """Of saturated liquid, kg/m^3 (IAPWS SR1-86)."""
+    """Density of saturated liquid water, kg/m^3 (IAPWS SR1-86)."""
     x = np.cbrt(1 - T / 647.096)
     return 322 * (1 + 1.99274064 * x + 1.09965342 * x**2 - 0.510839303 * x**5 - 1.75493479 * x**16 - 45.5170352 * x**43
                   - 6.74694450e5 * x**110)
 
 
 def normals(fractures):
-    """[face, 3] Of unit length, of either sign."""
+    """[face, 3] Unit normals of either sign."""
     x = fractures.corners
     along = x[:, 1] - x[:, 0]
     if x.shape[1] == 2:
@@ -397,7 +399,7 @@ def normals(fractures):
 
 @dataclass
 class SomeFaces:
-    """For JointLaw, which describes these."""
+    """Argument `faces` of JointLaw."""
     normal: np.ndarray
     slip: np.ndarray
     told: dict

@@ -1,21 +1,21 @@
-"""What must hold for a run of a coupled scene, from the files that it wrote. Each check returns lines that say what is wrong."""
+"""Checks of a coupled run from its output files. Each check returns lines that describe the violations."""
 import re
 
 import numpy as np
 
-import violation  # of perf/contact
+import violation  # in perf/contact
 from balances import Balances
 
-BALANCE = 1e-6      # of the largest flow of the run
-OVERSHOOT = 1e-3    # of the span of the given temperatures
-CONTACT = 1e-8      # of displacement or traction, see perf/contact
+BALANCE = 1e-6      # relative to the largest flow of the run
+OVERSHOOT = 1e-3    # relative to the range of the given temperatures
+CONTACT = 1e-8      # relative to displacement or traction, as in perf/contact
 DIFFERENCE = 1e-8   # between two runs of one scene
-ROUNDING = 1e-12    # of an aperture, by the displacement
+ROUNDING = 1e-12    # of an aperture, relative to the displacement
 SAYS_OVERSHOOT = re.compile(r"warning: .*temperatures are more than .* K beyond the given ones")
 
 
 def balances(written):
-    """(lines, largest surplus of fluid and of energy relative to what is allowed besides)"""
+    """Returns (lines, largest surplus of fluid and of energy beyond the unknown part, relative to the scale)."""
     lines, worst, own = [], [], Balances(written)
     for what, steps in (("fluid", own.of_fluid()), ("energy", own.of_energy())):
         scale = max((step.scale for step in steps), default=0)
@@ -29,7 +29,7 @@ def balances(written):
 
 
 def given_temperatures(written):
-    """The least and the largest over the run of those that the scene gives, or None where it gives heat, too."""
+    """Range of the temperatures given in the scene; None with heat sources, heat fluxes or heat of friction."""
     entries = written.entries
     heat = entries["Heat"]
     conditions = entries.get("Boundary conditions", {}).values()
@@ -44,7 +44,8 @@ def given_temperatures(written):
 
 
 def temperatures(written, log):
-    """Within the given ones, unless the run says that they are not."""
+    """Checks that temperatures stay in the given range, unless the run warns about the overshoot. Returns (lines,
+    overshoot)."""
     given = given_temperatures(written) if "Heat" in written.entries else None
     if given is None:
         return [], None
@@ -87,7 +88,7 @@ def finite(written):
 
 
 def rounding_of_stress(written):
-    """The thermal stress of a change of temperature by its rounding, Pa."""
+    """Thermal stress due to round-off of the temperature, Pa."""
     level = written.value(written.entries["Heat"]["initial temperature"]) if "Heat" in written.entries else 0
     stiffness = max((float(m.get("Young's modulus", 0)) * abs(float(m.get("thermal expansion", 0)))
                      for m in written.entries["Materials"].values()), default=0)
@@ -95,7 +96,7 @@ def rounding_of_stress(written):
 
 
 def contact(written):
-    """(lines, violation) of the laws of contact and friction."""
+    """Returns (lines, violation) of the contact and friction laws."""
     first = written.states[0].fractures if written.states else None
     if first is None or "traction local" not in first.cell_data:
         return [], None

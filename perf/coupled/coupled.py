@@ -23,14 +23,15 @@ from written import Written  # noqa: E402
 
 LIMITS = program_run.Limits(processor=60, clock=600)
 COLUMNS = ("scene", "cells", "steps", "median", "max", "cuts", "fluid", "energy", "overshoot", "contact", "difference", "also", "seconds")
-AGAIN = ("2 ranks", "renamed", "restart", "3 ranks", "renumbered", "repeated")  # scene k runs in the way k of these, too
+AGAIN = ("2 ranks", "renamed", "restart", "3 ranks", "renumbered", "repeated")  # scene k is run in way k of these, too
 ATTEMPTS = 10
-NO_SCENE = ("slip would do work", "a well as wide as", "the hydraulic aperture is")  # such scenes are drawn anew
+# scenes with these messages are drawn again
+NO_SCENE = ("slip would do work", "a well as wide as", "the hydraulic aperture is")
 
 
 @dataclass
 class Judged:
-    """A scene that has been run. `numbers`: of COLUMNS from "fluid" on."""
+    """Results of a scene. `numbers` contains the values of COLUMNS from "fluid" on."""
     ended: object
     written: object = None
     wrong: list = field(default_factory=list)      # failures
@@ -40,7 +41,7 @@ class Judged:
 
 
 def judge(ended, directory):
-    """Exit status, balances, bounds and laws of one run."""
+    """Checks exit status, balances, bounds and laws of one run."""
     run = Judged(ended)
     if ended.status is None:
         run.wrong.append(f"no end within {LIMITS.processor} s of a processor")
@@ -64,7 +65,7 @@ def judge(ended, directory):
 
 
 def again(options, way, scene, directory, run):
-    """Runs the scene in another way; the largest difference, and what is wrong."""
+    """Runs the scene in another way. Returns (largest difference, messages)."""
     other = directory.with_name(re.sub(r"\W", "_", way))
     ranks, words, rename = 1, [], str
     if way.endswith("ranks"):
@@ -82,7 +83,7 @@ def again(options, way, scene, directory, run):
 
 
 def restarted(options, scene, directory, run):
-    """The last step once more, from the checkpoint before it: bit for bit the same."""
+    """Repeats the last step from the checkpoint before it. The results must be bitwise identical."""
     other = directory.with_name("restart")
     shutil.copytree(directory, other)
     checkpoints = sorted((folder for folder in (other / "checkpoints").iterdir() if folder.is_dir() and folder.name.isdigit()),
@@ -103,7 +104,7 @@ def compared(way, run, other, allowed, rename=str):
 
 
 def renamed(scene):
-    """A copy of the scene whose fractures have other names, in the opposite order; and the way back."""
+    """Writes a copy of the scene with fractures renamed in the opposite order. Returns (file, map to the old names)."""
     tree = xml.parse(scene)
     names = [node.get("name") for node in tree.getroot().find("ParameterList[@name='Fractures']")]
     new = {name: f"g{len(names) - k:02}" for k, name in enumerate(names)}
@@ -125,14 +126,14 @@ CHECKPOINTS = ["--set", "Output.checkpoints.steps=1"]
 
 
 def ways(options, k, run):
-    """In which other ways scene k is run."""
+    """Returns the other ways in which scene k is run."""
     chosen = AGAIN if options.all_ways else AGAIN[k % len(AGAIN):][:1]
     no_fractures, one_step = run.written.states[0].fractures is None, len(run.ended.results["steps"]) < 2
     return [way for way in chosen if not (way == "renamed" and no_fractures or way == "restart" and one_step)]
 
 
 def draw_and_run(options, k):
-    """Scene k of the seed, its file and its run."""
+    """Draws and runs scene k of the seed; returns (drawn, scene file, directory, ended run)."""
     for attempt in range(ATTEMPTS):
         drawn = coupled_scenes.draw_scene(options.seed, k, attempt)
         scene = options.output / "drawn" / f"{drawn.name}.xml"
@@ -146,7 +147,7 @@ def draw_and_run(options, k):
 
 
 def run_one(options, k):
-    """Draws, runs and judges scene k; keeps its file if something is wrong."""
+    """Draws, runs and judges scene k; saves its file if a check failed."""
     drawn, scene, directory, ended = draw_and_run(options, k)
     try:
         run = judge(ended, directory)
@@ -157,7 +158,7 @@ def run_one(options, k):
                 run.numbers["also"].append(way)
                 run.numbers["difference"] = max(size or 0.0, run.numbers.get("difference") or 0.0)
                 (run.ranks if way.endswith("ranks") else run.violations).extend(lines)
-    except Exception as error:  # files that cannot be read, say; the other scenes go on
+    except Exception as error:  # e.g. unreadable files; the other scenes continue
         if options.jobs == 1 and options.trace:
             raise
         run = Judged(ended, wrong=[f"could not be judged: {type(error).__name__}: {error}"])
@@ -169,7 +170,7 @@ def run_one(options, k):
 
 
 def values(name, run):
-    """Of COLUMNS."""
+    """Returns the values of COLUMNS."""
     steps, newton = run.ended.results.get("steps", []), run.ended.newton or [0]
     counts = [run.ended.results.get("mesh", {}).get("cells"), len(steps), sorted(newton)[len(newton) // 2], max(newton),
               sum(step["cuts"] for step in steps)]

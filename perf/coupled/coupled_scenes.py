@@ -1,4 +1,4 @@
-"""Scenes of flow, heat and rock that they deform, drawn at random: scene k of a seed depends on these two numbers alone."""
+"""Random scenes of flow, heat and deformation. Scene k of a seed depends only on these two numbers."""
 import math
 import random
 import sys
@@ -11,12 +11,12 @@ import random_scenes  # noqa: E402
 from random_joints import any_joint  # noqa: E402
 from random_scenes import SIDES, Drawn, box, rectangle, shape, turned  # noqa: E402
 
-PHYSICS = {"flow": 12, "heat": 8, "flow-heat": 15, "thermoelastic": 8, "poro": 27, "thm": 30}  # and their shares
+PHYSICS = {"flow": 12, "heat": 8, "flow-heat": 15, "thermoelastic": 8, "poro": 27, "thm": 30}  # with their shares
 WATER = {"viscosity": 1e-3, "density": 1000.0}
 
 
 class Draw(random_scenes.Draw):
-    """With what the parts of a scene have in common. Stresses in Pa, lengths in m, times in s."""
+    """Random generator and common properties of one scene. Stresses in Pa, lengths in m, times in s."""
 
     def __init__(self, rng, dim, physics):
         super().__init__(rng, dim)
@@ -26,8 +26,8 @@ class Draw(random_scenes.Draw):
         self.heats = physics not in ("flow", "poro")
         self.size = float(rng.choice((1, 10, 100, 100, 500)))
         self.modulus = 10 ** rng.uniform(9.7, 10.8)
-        self.stress = 10 ** rng.uniform(6.5, 7.6)           # a typical compression
-        self.pressure = self.stress * rng.uniform(0.1, 0.45)  # at the start
+        self.stress = 10 ** rng.uniform(6.5, 7.6)           # typical compression
+        self.pressure = self.stress * rng.uniform(0.1, 0.45)  # initial pressure
         self.temperature = rng.uniform(295, 420)
         self.steps = rng.randint(2, 5)
         self.permeability = self.power(-19.5, -13)
@@ -47,7 +47,7 @@ class Draw(random_scenes.Draw):
         return max(self.pores + self.porosity * self.fluid + softness, 1e-13)
 
     def set_times(self):
-        """From a short part of the time that diffusion takes to a few times that."""
+        """Sets the end time between a small part and a few times the diffusion time."""
         times = []
         if self.flows:
             times.append(self.size**2 * WATER["viscosity"] * self.storage / self.permeability * self.power(-4, 0.3))
@@ -62,12 +62,12 @@ class Draw(random_scenes.Draw):
         self.ends = even
 
     def over_time(self, name, values):
-        """The call of a table of values at the start and at the ends of steps."""
+        """Adds a table of values at the start and at the step ends; returns the expression of its call."""
         self.tables[name] = {"arguments": [0.0, *self.ends], "values": [float(v) for v in values]}
         return f"{name}(t)"
 
     def changing(self, name, value, start=None, p=0.4):
-        """A number, or with a chance of p a text of the time that begins at `start`."""
+        """Returns a number or, with probability p, an expression of time that begins at `start`."""
         if not self.chance(p):
             return value
         first = value if start is None else start
@@ -118,7 +118,7 @@ def joint(draw):
 
 
 def closed_at_most(law, load):
-    """By how much a joint closes under a load, no less, m."""
+    """Upper bound of the closure of a joint under a load, m."""
     if "maximum closure" in law:
         return law["maximum closure"]
     if "joint aperture" in law:
@@ -171,7 +171,8 @@ def other_temperature(draw):
 
 
 def of_fluid(draw, side):
-    """What a boundary condition says of the fluid: that it is closed in a third of the scenes."""
+    """Entries of a boundary condition for the fluid; empty for a closed boundary. A third of the scenes are closed
+    everywhere."""
     rng, start = draw.rng, draw.pressure
     if draw.closed or draw.chance(0.35):
         return {}
@@ -186,7 +187,7 @@ def of_fluid(draw, side):
 
 
 def of_heat(draw, side, passed):
-    """`passed`: fluid does, so that a temperature is likely."""
+    """Entries of a boundary condition for heat. If fluid crosses the boundary (`passed`), a temperature is likely."""
     rng = draw.rng
     if not draw.chance(0.8 if passed else 0.6):
         return {}
@@ -199,7 +200,7 @@ def of_heat(draw, side, passed):
 
 
 def wells(draw, high, cells, fractures):
-    """Wells, and the temperatures of what they put in."""
+    """Returns wells and the temperatures of the injected fluid."""
     rng, dim = draw.rng, draw.dim
     lines, temperatures = {}, {}
     size = min(h / n for h, n in zip(high, cells))
@@ -218,7 +219,7 @@ def wells(draw, high, cells, fractures):
             if in_fracture:
                 first[axis], last[axis] = (max(place[axis] + s * 0.4 * size, 0.0) for s in (-1, 1))
             others = [i for i in range(3) if i != axis]
-            for i in others:  # not in a plane of the mesh, along which a fracture may be
+            for i in others:  # not in a mesh plane, which may contain a fracture
                 cell = min(int(place[i] / high[i] * cells[i]), cells[i] - 1)
                 first[i] = last[i] = high[i] * (cell + rng.choice((0.37, 0.61))) / cells[i]
             if math.dist(first, last) < 0.05 * size:
@@ -244,7 +245,7 @@ def wells(draw, high, cells, fractures):
 # Mechanics
 
 def initial_stress(draw):
-    """Total stress, as in the entry; its tensor."""
+    """Components of the total initial stress, as in the entry."""
     rng, dim = draw.rng, draw.dim
     normal = [-draw.stress * rng.uniform(0.8, 1.3) for _ in range(3)]
     shear = [draw.stress * rng.uniform(-0.15, 0.15)] + [0.0] * (0 if dim == 2 else 2)
@@ -252,7 +253,7 @@ def initial_stress(draw):
 
 
 def held(draw, sides, stress):
-    """u = G(t) x on all sides, or supports on some and the initial stress on the others."""
+    """Displacement u = G(t) x on all sides, or supports on the lower sides and the initial stress on the others."""
     dim, rng = draw.dim, draw.rng
     strain = 0.15 * draw.stress / draw.modulus
     if stress is None or draw.chance(0.6):
@@ -290,10 +291,10 @@ def normal_component(stress, dim, i, j):
     return stress[3 + {(0, 1): 0, (1, 2): 1, (0, 2): 2}[min(i, j), max(i, j)]]
 
 
-# The whole
+# Complete scene
 
 def tip_beside_boundary(ends, high, cells):
-    """Whether a fracture that ends inside of the box has an end in a cell at the boundary."""
+    """True if a fracture that ends inside the box has an end in a boundary cell."""
     spans = [[round(v / h * n) for v in pair] for *pair, h, n in zip(*ends, high, cells)]
     inside = any(a != b and (a > 0 or b < n) for (a, b), n in zip(spans, cells))
     return inside and any(a <= 1 or b >= n - 1 for (a, b), n in zip(spans, cells))
@@ -314,7 +315,7 @@ def scene(draw):
     draw.fractured = bool(fractures)
     draw.bdf = draw.chance(0.4)
     draw.set_times()
-    beside = any(tip_beside_boundary(ends, high, cells) for ends in fractures.values())  # the balance of fluid is not known there
+    beside = any(tip_beside_boundary(ends, high, cells) for ends in fractures.values())  # fluid balance unknown there
     more = {"order": order} | ({"tips": "plain"} if draw.chance(0.75 if beside else 0.3) else {})
     stress = initial_stress(draw) if draw.deforms and draw.chance(0.75) else None
     if not draw.deforms:
@@ -384,7 +385,7 @@ def add_heat(draw, tree, conditions):
 
 
 def draw_scene(seed, k, attempt=0):
-    """Scene k of a seed; further attempts are for scenes that the program refuses as input."""
+    """Draws scene k of a seed. Further attempts replace scenes that the program refuses as input."""
     rng = random.Random(f"coupled/{seed}/{k}")
     physics, = rng.choices(list(PHYSICS), list(PHYSICS.values()))
     dim = 2 if rng.random() < 0.65 else 3

@@ -1,16 +1,17 @@
-"""By how much the results of two runs of one scene differ, relative to what is largest in the first: cells and faces are matched
-by their places, fractures by their names."""
+"""Differences between the results of two runs of one scene, relative to the largest values of the first.
+
+Cells and faces are matched by place, fractures by name."""
 import numpy as np
 
 LENGTHS = ("displacement", "jump", "opening", "slip", "widening")
 STRESSES = ("stress", "traction", "largest compression")
 LEFT_OUT = ("rank", "material", "fracture", "single fracture", "state", "slip tendency", "error of damage history")
-ROUNDING, ALLOWED = 1e-14, 1e-8  # of levels of pressures and temperatures; of differences
-NEAR = 1e-9  # of the limit between two states: there a face may have either
+ROUNDING, ALLOWED = 1e-14, 1e-8  # round-off relative to the level of pressure and temperature; allowed difference
+NEAR = 1e-9  # distance from the limit between two contact states, within which either state is accepted
 
 
 class Scales:
-    """The largest values of a run, by the kind of an array."""
+    """Largest values of a run by kind of array."""
 
     def __init__(self, written):
         self.start = {"pressure": _start(written, "Flow", "initial pressure"), "temperature": _start(written, "Heat", "initial temperature")}
@@ -22,13 +23,15 @@ class Scales:
                     size = np.abs(values - self.start.get(kind, 0)).max(initial=0)
                     self.largest[kind] = max(self.largest.get(kind, 0), size, 1e-5 * abs(self.start.get(kind, 0)))
         self._least_fluxes(written)
-        if self.start["pressure"]:  # what the initial pressure makes of stresses
+        if self.start["pressure"]:  # stress caused by the initial pressure
             self.largest["stress"] = max(self.largest.get("stress", 0), abs(self.start["pressure"]))
         self._least_stresses(written)
 
     def _least_fluxes(self, written):
-        """Flows are known to the rounding of the driving pressures and temperatures, 1e-14 of their levels, times the conductance of
-        a cell."""
+        """Raises the scales of fluxes to their round-off.
+
+        The round-off of driving pressures and temperatures is 1e-14 of their level; it is multiplied by the
+        conductance of a cell."""
         first = written.states[0]
         edge = (first.bulk.sizes.min()) ** (1 / first.bulk.dim)
         level = abs(self.start["pressure"]) + self.largest.get("pressure", 0)
@@ -81,7 +84,7 @@ def kind_of(name):
 
 
 def order(grid, names=()):
-    """The order of cells by their places, and by the names of their fractures."""
+    """Order of cells by place and by name of their fracture."""
     extent = max(np.ptp(grid.points, axis=0).max(), 1e-300)
     place = np.round(grid.centres / extent * 1e6 + 0.3123).astype(np.int64)
     keys = [place[:, 2], place[:, 1], place[:, 0]]
@@ -92,7 +95,8 @@ def order(grid, names=()):
 
 
 def largest(one, other, rename=lambda name: name, scales=None):
-    """(relative difference, what) of two runs; `rename`: from a name of a fracture in the other run to that in the first."""
+    """Returns (relative difference, array and time) of two runs. `rename` maps fracture names of the other run to
+    the first."""
     if len(one.states) != len(other.states):
         return np.inf, f"{len(one.states)} states are written, and {len(other.states)}"
     scales, worst = scales or Scales(one), (0.0, "")
@@ -110,7 +114,7 @@ def largest(one, other, rename=lambda name: name, scales=None):
 
 
 def of_numbers(one, other, rename, scales):
-    """The same of wells and of what comes in."""
+    """Returns the largest difference of wells and boundary inflows."""
     worst = 0.0, ""
     steps = list(zip(one.results["steps"], other.results["steps"]))
     for key in ("inflows", "heat_inflows"):
@@ -133,7 +137,7 @@ def _own(key, rename):
 
 
 def _least(written, scales, key):
-    """A flow through the whole boundary that is next to nothing."""
+    """Smallest scale of a boundary flow: scale of the flux density times the area of a side."""
     bulk = written.states[0].bulk
     area = bulk.sizes.sum() ** (1 - 1 / bulk.dim)
     return scales.of("Darcy velocity" if key == "inflows" else "heat flux") * area

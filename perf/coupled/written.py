@@ -1,4 +1,4 @@
-"""The states that a run wrote, as arrays: cells, fracture faces, and the volume that the outer boundary has moved through."""
+"""States written by a run, as arrays: cells, fracture faces, and the volumes swept by the faces of cells."""
 import math
 import sys
 import xml.etree.ElementTree as xml
@@ -10,11 +10,11 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "apps/plot"))
 
 import numpy as np  # noqa: E402
 
-import read  # noqa: E402  of apps/plot
+import read  # noqa: E402  in apps/plot
 
-SIMPLEX = {5: 2, 22: 2, 10: 3, 24: 3}  # by the type of VTK: dimension; all others are parallelepipeds
+SIMPLEX = {5: 2, 22: 2, 10: 3, 24: 3}  # VTK type: dimension; all others are parallelepipeds
 DIMENSION = {5: 2, 22: 2, 9: 2, 28: 2, 10: 3, 24: 3, 12: 3, 29: 3}
-# By the type of VTK: the corners of each face, by their numbers in the cell, and its other nodes.
+# VTK type: for each face, its corners by their numbers in the cell, then its other nodes.
 EDGES = {5: ((0, 1), (1, 2), (2, 0)), 9: ((0, 1), (1, 2), (2, 3), (3, 0)),
          22: ((0, 1, 3), (1, 2, 4), (2, 0, 5)), 28: ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7))}
 FACES = {10: ((0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)),
@@ -22,14 +22,15 @@ FACES = {10: ((0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)),
          12: ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)),
          29: ((0, 4, 7, 3, 16, 15, 19, 11, 20), (1, 2, 6, 5, 9, 18, 13, 17, 21), (0, 1, 5, 4, 8, 17, 12, 16, 22),
               (3, 7, 6, 2, 19, 14, 18, 10, 23), (0, 3, 2, 1, 11, 10, 9, 8, 24), (4, 5, 6, 7, 12, 13, 14, 15, 25))}
-# By the number of nodes and the dimension: the integral of a shape function over a face of area 1.
+# (nodes of a face, dimension): integrals of the shape functions over a face of area 1.
 WEIGHTS = {(2, 2): (1 / 2, 1 / 2), (3, 2): (1 / 6, 1 / 6, 2 / 3), (3, 3): (1 / 3,) * 3, (6, 3): (0,) * 3 + (1 / 3,) * 3,
            (4, 3): (1 / 4,) * 4, (9, 3): (1 / 36,) * 4 + (1 / 9,) * 4 + (4 / 9,)}
 
 
 @dataclass
 class Grid:
-    """points: [n, 3]; cells: [k] arrays of point numbers; type: of VTK; arrays of cells and points by their names."""
+    """Mesh with data. points: [n, 3]; cells: [k] arrays of point numbers; type: VTK type; data of cells and points
+    by name."""
     points: np.ndarray
     cells: np.ndarray
     type: int
@@ -59,7 +60,7 @@ class Grid:
 
     @cached_property
     def sizes(self):
-        """Volumes of cells that fill space, areas or lengths of faces, by straight edges; quadrilaterals and hexahedra are
+        """Volumes of cells, areas or lengths of faces, with straight edges; quadrilaterals and hexahedra as
         parallelepipeds."""
         x = self.corners
         if self.type in (3, 21):
@@ -75,7 +76,7 @@ class Grid:
 
 
 class Faces:
-    """The faces of all cells, those between two cells twice: nodes [face, k], area vectors out of the cell [face, 3]."""
+    """Faces of all cells; faces between two cells occur twice. nodes [face, k], outward area vectors [face, 3]."""
 
     def __init__(self, bulk, fracture_centres):
         table = np.array((EDGES | FACES)[bulk.type])
@@ -94,24 +95,27 @@ class Faces:
         self.area = area * np.sign(((centres - bulk.centres[self.cell]) * area).sum(axis=1))[:, None]
         _, inverse, count = np.unique(np.sort(self.nodes[:, :n_corners], axis=1), axis=0, return_inverse=True, return_counts=True)
         of_fracture = {key: f for f, key in enumerate(rounded(fracture_centres, extent))}
-        self.fracture = np.array([of_fracture.get(key, -1) for key in rounded(centres, extent)])  # its face; -1: none
+        # fracture face; -1: none
+        self.fracture = np.array([of_fracture.get(key, -1) for key in rounded(centres, extent)])
         self.outer = (count[inverse.reshape(-1)] == 1) & (self.fracture < 0)
 
         regular = x.mean(axis=1) if self.nodes.shape[1] == n_corners else None
         middle = regular if regular is not None else bulk.points[self.nodes[:, n_corners:]].mean(axis=1)
-        self.bent = self.outer & (np.linalg.norm(middle - centres, axis=1) > 1e-9 * extent)  # nodes at quarters of edges
+        self.bent = self.outer & (np.linalg.norm(middle - centres, axis=1) > 1e-9 * extent)  # quarter-point nodes
 
     def beyond_nodes(self, tips):
-        """Whether the outer boundary moves beyond its nodes, at crack tips; `tips`: the points' coefficients there, or None."""
+        """True if the outer boundary has displacements beyond its nodes, at crack tips.
+
+        `tips` contains the coefficients of the tip enrichment at the points, or is None."""
         return bool(self.bent.any()) or tips is not None and bool(np.abs(tips[self.nodes[self.outer]]).any())
 
     def swept(self, displacement):
-        """[face] The volume between a face and where it was, m^3, to first order."""
+        """[face] Volume between a face and its initial place, m^3, to first order."""
         return (np.einsum("k,fki->fi", self.weights, displacement[self.nodes]) * self.area).sum(axis=1)
 
 
 def rounded(points, extent):
-    """Keys that are the same for points that are."""
+    """Returns integer keys that are equal for points at the same place."""
     return [tuple(key) for key in np.round(np.reshape(points, (-1, 3)) / extent * 1e7).astype(np.int64)]
 
 
@@ -124,7 +128,7 @@ class State:
 
 
 class Written:
-    """All that a run wrote. `entries`: effective_input.xml as nested dictionaries of texts."""
+    """Output of a run. `entries` contains effective_input.xml as nested dictionaries of texts."""
 
     def __init__(self, directory, results):
         self.directory, self.results = Path(directory), results
@@ -140,12 +144,12 @@ class Written:
 
     @cached_property
     def fracture_names(self):
-        """By the number in the array "fracture"."""
+        """Fracture names by the number in the array "fracture"."""
         return sorted(name for name, entry in self.entries.get("Fractures", {}).items() if isinstance(entry, dict))
 
     @cached_property
     def material_names(self):
-        """By the number in the array "material": that of Bulk first, then those of regions."""
+        """Names of the elastic materials in alphabetical order."""
         return material_names(self.entries)
 
     def number(self, *path, default=None):
@@ -161,7 +165,7 @@ class Written:
         return value if isinstance(value, str) else default
 
     def value(self, text, t=0.0, x=(0.0, 0.0, 0.0)):
-        """Of an expression of the place and the time, with the tables of the scene."""
+        """Value of an expression of place and time, with the tables of the scene."""
         tables = {name: (lambda a, _t=table: float(np.interp(a, numbers(_t["arguments"]), numbers(_t["values"]))))
                   for name, table in self.entries.get("Tables", {}).items()}
         names = {"x": x[0], "y": x[1], "z": x[2], "t": t, "pi": math.pi, "sin": math.sin, "cos": math.cos, "exp": math.exp}

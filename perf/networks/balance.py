@@ -1,42 +1,47 @@
-"""Balance of forces and moments, energy, and dissipation on faces, computed from what a run of a box of simplices wrote.
+"""Balances of forces, moments and energy, and dissipation on faces, from the output of a run of a box of
+simplices.
 
-Work of the loads over a step, by the trapezoid rule, is exact for a linear body. It goes into strain of the rock, energy
-stored in joints (elastic shear, closure) and heat, of which sliding against friction gains some and lifting against the load
-by dilation loses some. Strain energy is half of what the loads and the tractions on fractures do on the displacement at the time
-(Clapeyron). Nothing of the solver is used: displacement, jumps and tractions come from the grids, reactions from
-results.json, laws and loads from effective_input.xml. What is left over, the defect, vanishes with the step. It has a part of
-first order, heat being that of the traction at the end of a step, and one of second order, from closure, which is not linear.
-Displacements of loaded sides are those of nodes: tips must be plain."""
+The work of the loads over a step, by the trapezoid rule, is exact for a linear body. It equals the change of
+strain energy and of the energy stored in joints (elastic shear, closure), plus heat. Friction contributes
+positively to the heat, dilation against the load negatively. The strain energy is half of the work of the
+present loads and fracture tractions on the present displacements (Clapeyron).
+
+The check uses nothing of the solver. Displacement, jumps and tractions come from the grids, reactions from
+results.json, laws and loads from effective_input.xml. The remaining defect vanishes with the step size. It has
+a first-order part, because heat uses the traction at the end of a step, and a second-order part from the
+nonlinear closure. Displacements of loaded sides are nodal: tips must be plain."""
 from dataclasses import dataclass
 
 import numpy as np
 
-import read       # of apps/plot
-import violation  # of perf/contact
+import read       # in apps/plot
+import violation  # in perf/contact
 
 AXES = {"west": (0, 0), "east": (0, 1), "south": (1, 0), "north": (1, 1), "bottom": (2, 0), "top": (2, 1)}  # (axis, upper end)
-NEAR = 1e-9  # of the domain's size: nodes this close to a side are on it
+NEAR = 1e-9  # relative to the domain size: nodes within this distance lie on a side
 
 
 @dataclass
 class Budget:
-    """One value per step, J (2D: J/m), since the start; forces relative to the largest reaction (moments: times the size)."""
+    """Energies since the start, one value per step, J (2D: J/m), and balances.
+
+    Forces are relative to the largest reaction, moments to the largest reaction times the size."""
     work: np.ndarray
     strain: np.ndarray
     stored: np.ndarray
     heat: np.ndarray
-    late: np.ndarray   # heat of the traction at the end of steps, less that of the mean over them
+    late: np.ndarray   # heat by tractions at step ends minus heat by mean tractions
     balance: float    # largest sum of forces or moments
-    least_heat: float  # least lambda_t . du^p of a face in a step, relative to the largest
+    least_heat: float  # smallest lambda_t . du^p of a face in a step, relative to the largest
 
     @property
     def defect(self):
-        """Of the energy at the end, relative to the work."""
+        """Energy defect at the end, relative to the work."""
         return (self.work - self.strain - self.stored - self.heat)[-1] / self.work[-1]
 
 
 class Box:
-    """Geometry and loads of a run; arrays over all steps, the state at rest first."""
+    """Geometry and loads of a run. Arrays over all steps begin with the state at rest."""
 
     def __init__(self, directory, results):
         self.input = violation.Input(directory / "effective_input.xml")
@@ -52,7 +57,7 @@ class Box:
         self.size = np.ptp(self.bounds, axis=1).max()
 
     def side(self, boundary):
-        """Corners [face, corner] of the simplices on a side, and their areas."""
+        """Corners [face, corner] and areas of the facets on a side."""
         axis, upper = AXES[boundary]
         on = np.abs(self.points[:, axis] - self.bounds[axis, upper]) < NEAR * self.size
         faces = np.concatenate([np.delete(self.cells, k, axis=1) for k in range(self.dim + 1)])
@@ -62,7 +67,8 @@ class Box:
         return faces, np.linalg.norm(normal, axis=1)
 
     def prescribed(self, kind):
-        """{boundary: vectors [time, 3]} of conditions that give all components, each a multiple of a table or zero."""
+        """Conditions that give all components, {boundary: vectors [time, 3]}; each component is a multiple of a
+        table, or constant."""
         found = {}
         for name in self.input.names("Boundary conditions"):
             words = (self.input.text("Boundary conditions", name, kind) or "").strip("{} ").split(",")
@@ -76,22 +82,23 @@ class Box:
         table = ("Tables", name.removesuffix("(t)"))
         values = np.interp(self.times, self.input.numbers(*table, "arguments"), self.input.numbers(*table, "values")) \
             if name.endswith("(t)") else np.full(len(self.times), float(name))
-        return sign * values * (self.times > 0)  # nothing acts before the first step
+        return sign * values * (self.times > 0)  # no loads before the first step
 
 
 def vectors(rows):
-    """With zeros for components that a plane problem lacks, and a row of them for the state at rest."""
+    """Returns rows extended to three components, after a row of zeros for the state at rest."""
     return np.array([[0, 0, 0]] + [[*row, 0, 0][:3] for row in rows], dtype=float)
 
 
 def works(force, displacement):
-    """Work since the start by the trapezoid rule, and of the forces of each time on its displacements, [time]."""
+    """[2, time] Work since the start by the trapezoid rule, and force times displacement at each time."""
     steps = ((force[1:] + force[:-1]) / 2 * np.diff(displacement, axis=0)).sum(axis=1)
     return np.array([np.concatenate([[0], np.cumsum(steps)]), (force * displacement).sum(axis=1)])
 
 
 def loads(box):
-    """Works [2, time], sums of forces and of moments [time, 3] with all that acts on the sides, and the largest reaction."""
+    """Returns works [2, time], sums of forces and moments [time, 3] of all loads on the sides, and the largest
+    reaction."""
     work, forces, moments, largest = 0, 0, 0, 0
     for boundary, displacement in box.prescribed("displacement").items():
         force = vectors(step["reactions"][boundary] for step in box.steps)
@@ -113,7 +120,8 @@ def loads(box):
 
 
 def joints(directory, results, box):
-    """Work of tractions on jumps, energy stored, heat, its late part [time]; the least heat of a face in a step over the largest."""
+    """Returns work of tractions on jumps, stored energy, heat and its late part [time]; smallest heat of a face in
+    a step over the largest."""
     steps, _ = violation.history(directory, box.input)
     areas = face_areas(directory, box)
     taken, stored, heat, late, shares = [0], [0], [0], [0], []
@@ -122,7 +130,8 @@ def joints(directory, results, box):
         shear, normal = step.traction[:, 1:], step.traction[:, 0]
         increment = step.plastic[:, 1:] - slip[:, 1:]
         share = areas * (shear * increment).sum(axis=1)
-        shares.append(share if told["substeps"] == 1 else np.zeros(1))  # the increment of several is not along one traction
+        # with several substeps, no single traction belongs to the increment
+        shares.append(share if told["substeps"] == 1 else np.zeros(1))
         lift, of = np.zeros(len(areas)), np.zeros(len(areas))
         for k, joint in enumerate(box.input.joints):
             on = step.fracture == k
@@ -138,7 +147,7 @@ def joints(directory, results, box):
 
 
 def closure_energy(joint, load):
-    """Integral of N over the closure d, where N = K V d / (V - d) (Barton and Bandis), per area."""
+    """Integral of N over the closure d per area, for N = K V d / (V - d) (Barton and Bandis)."""
     if joint.closure == 0:
         return 0
     load = np.maximum(load, 0)
@@ -147,7 +156,7 @@ def closure_energy(joint, load):
 
 
 def face_areas(directory, box):
-    """In the order of violation.faces."""
+    """Areas in the order of violation.faces."""
     grid = read.grid(read.written_steps(directory, "fractures")[0][1])
     points, cells = read.vtk_to_numpy(grid.GetPoints().GetData()), np.array(read.cells(grid.GetCells()))
     edges = points[cells[:, 1:]] - points[cells[:, :1]]

@@ -18,12 +18,12 @@ import contact  # noqa: E402
 import linear  # noqa: E402
 import scale  # noqa: E402
 
-TIME_LIMIT = 3600  # seconds of the processor, of one run
-STEPS = 11           # of the scenes: one compresses, ten shear
-REFINED = (1, 2, 4, 8)  # the defect of the energy with so many times the steps
+TIME_LIMIT = 3600  # CPU seconds per run
+STEPS = 11           # steps of the scenes: one of compression, ten of shear
+REFINED = (1, 2, 4, 8)  # refinement factors of the steps for the energy defect
 BOUNDS = {"newton_median": 6, "newton_max": 12, "balance": 1e-8}
 LEAST_HEAT = -1e-10  # of a face in a step, relative to the largest
-ORDER = 0.8          # of the defect of the energy in the step, at least; 1 is expected
+ORDER = 0.8          # lower bound on the order of the energy defect in the step size; 1 is expected
 COLUMNS = {"network": "s", "dim": "d", "fractures": "d", "faces": "d", "unknowns": "d", "steps": "d", "median": ".1f", "max": "d",
            "cuts": "d", "slip": ".0%", "open": ".1%", "balance": ".0e", "violation": ".0e", "heat": ".0e", "seconds": ".0f"}
 NETWORK = "Mesh file.network"
@@ -32,15 +32,15 @@ NETWORK = "Mesh file.network"
 @dataclass
 class Network:
     name: str
-    file: str          # of xml/networks
+    file: str          # in xml/networks
     sets: tuple = ()   # entries of the network
     quick: bool = False
-    several: bool = False  # equilibria, as in perf/contact
+    several: bool = False  # several equilibria, as in perf/contact
 
 
 @dataclass
 class Run(contact.Run):
-    """Of a network on so many ranks."""
+    """Measured values of a network on some ranks."""
     budget: object = None
 
 
@@ -56,7 +56,7 @@ def networks():
 
 
 def made(options, network):
-    """The mesh of the network, and how many fractures it has."""
+    """Generates the mesh of the network; returns the file and the number of fractures."""
     mesh = options.output / network.name.replace(" ", "_").replace(",", "") / "network.msh"
     mesh.parent.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, "-B", str(ROOT / "apps/mesh"), "--program", str(options.binary), str(scene_of(network)), "-o", str(mesh), "--quiet"]
@@ -67,7 +67,7 @@ def made(options, network):
 
 
 def scene_of(network):
-    return ROOT / "xml/networks" / network.file  # or the file itself, if its path is absolute
+    return ROOT / "xml/networks" / network.file  # or `file` itself, if its path is absolute
 
 
 def words(entries):
@@ -75,7 +75,7 @@ def words(entries):
 
 
 def start(options, network, mesh, ranks, *sets, directory=None):
-    """Runs it, and fills in what went wrong in words."""
+    """Runs the network and adds messages of failures."""
     run = Run(network, mesh.parent / (directory or "_".join(str(value).replace("=", "_") for value in (ranks, *sets)).replace(" ", "_")))
     entries = network.sets + tuple(options.set) + (f"Mesh file.path={mesh}", *sets)
     command = [str(options.binary), "run", str(scene_of(network)), "--output", str(run.directory)] + words(entries)
@@ -92,7 +92,7 @@ def start(options, network, mesh, ranks, *sets, directory=None):
 
 
 def judge(run):
-    """What the states are worth, of a run that ended well."""
+    """Checks balances and contact laws of a successful run."""
     run.budget = balance.budget(run.directory, run.results)
     run.faces, run.scales, run.worst, _ = contact.violation.largest(
         run.directory, run.results, contact.violation.Input(run.directory / "effective_input.xml"))
@@ -105,7 +105,7 @@ def judge(run):
 
 
 def measured(options, network, table):
-    """A row; returns the run on one rank."""
+    """Measures a network and adds its row to the table; returns the run on one rank."""
     mesh, fractures = made(options, network)
     run, notes = start(options, network, mesh, 1), []
     if not run.failures:
@@ -128,7 +128,7 @@ def measured(options, network, table):
 
 
 def energies(options, network):
-    """Prints where the work goes, with more and more steps; returns what failed. Tips are plain, see balance.py."""
+    """Prints the energies for decreasing steps; returns messages of failures. Tips are plain, see balance.py."""
     mesh, _ = made(options, network)
     print(f"\n{network.name}, plain tips: work of the loads and where it goes, J{'/m' if '2d' in network.file else ''}")
     print(f"{'steps':>6}{'work':>14}{'strain':>14}{'joints':>14}{'heat':>14}{'defect':>11}{'order':>7}{'late heat':>12}{'order':>7}")

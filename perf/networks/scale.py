@@ -1,4 +1,4 @@
-"""Networks at random beside blocks of equal size: what an unknown costs where crack tips are everywhere."""
+"""Random networks compared with blocks of equal size: cost per unknown with crack tips throughout the domain."""
 import math
 from dataclasses import dataclass
 
@@ -7,9 +7,9 @@ import numpy as np
 import krylov
 import linear
 
-STEPS = 4     # of the scene: one compresses, the others shear
-DRAINED = 1e5  # s, of a step with flow: in less time the pressure of what cannot drain decides
-AS_DRAWN = {3: (300, 20), 2: (100, 10)}  # fractures and side of the domain of the scenes
+STEPS = 4     # of the scene: one of compression, the others of shear
+DRAINED = 1e5  # step with flow, s: in shorter steps the undrained pressure dominates
+AS_DRAWN = {3: (300, 20), 2: (100, 10)}  # number of fractures and domain size of the scenes
 SCENES = {3: "random_3d_300.xml", 2: "random_2d_100.xml"}
 SETS = {3: ("steep", "flat"), 2: ("main", "cross")}
 FLOW = ("Materials.granite.type=elastic", "Materials.granite.Young's modulus=50 GPa", "Materials.granite.Poisson's ratio=0.25",
@@ -26,7 +26,7 @@ COLUMNS = {"scene": "", "fractures": "d", "unknowns": "d", "of tips": "d", **{st
 
 @dataclass
 class Scale:
-    """A network of so many fractures as dense as that of its scene."""
+    """Network with a given number of fractures and the fracture density of its scene."""
     fractures: int
     dim: int
     flow: bool = False
@@ -53,7 +53,7 @@ class Scale:
         return (f"Mesh file.network.domain.upper corner={{{corner}}}", *numbers, *moved)
 
     def entries(self):
-        """Of the run."""
+        """Entries of the run."""
         step = DRAINED if self.flow else 1
         times = [f"Tables.{table}.arguments={{0, {step}, {11 * step}}}" for table in ("settlement", "confinement", "shear")]
         return (f"Time.end={STEPS * step}", f"Time.steps={STEPS}", *times, *(FLOW if self.flow else ()))
@@ -85,12 +85,13 @@ class Row:
 
     @property
     def seconds(self):
-        """Of a Newton iteration."""
+        """Seconds per Newton iteration."""
         return sum(self.run.seconds(what) for what in linear.TIMERS) / max(1, sum(self.newton))
 
     @property
     def cost(self):
-        """Seconds of a Newton iteration and bytes per displacement unknown, and the former per unknown of these and of tips."""
+        """Seconds of a Newton iteration and bytes per displacement unknown; seconds per displacement and tip
+        unknown."""
         n = max(1, self.run.unknowns)
         return self.seconds / n, self.run.bytes[0] / n, self.seconds / (n + self.tips)
 
@@ -102,15 +103,16 @@ class Row:
 
 
 def blocks(options, unknowns):
-    """Tetrahedra of perf krylov, in all states, with about as many unknowns."""
+    """Runs the tetrahedral mesh of perf krylov with all contact states and a similar number of unknowns."""
     edge = round((unknowns / 3) ** (1 / 3)) - 1
-    edge = 6 * max(2, round(edge / 6))  # so that cells end at the fractures
+    edge = 6 * max(2, round(edge / 6))  # cell boundaries match the fractures
     run = linear.run(options, (*linear.cells(edge), "Mesh.cell=tetrahedron", *krylov.STATES["mixed"]), f"blocks_{edge}")
     return Row(f"blocks, {edge} cells", 9, run)
 
 
 def measure(options, made, seed):
-    """Prints the table and the last line; returns the exit status. `made` makes the mesh of a network."""
+    """Prints the table and the last line; returns the exit status. made(scale, sets) generates the mesh of a
+    network."""
     chosen = linear.matching(options, [s for s in scales() if s.quick or not options.quick], lambda scale: scale.name)
     table, failed, networks, beside = linear.Table(COLUMNS, 26), [], [], {}
 
