@@ -1,4 +1,4 @@
-"""The cases: scenes, meshes, what is measured on them, and the bounds."""
+"""Cases of contact and friction: scenes, meshes, measured errors and bounds."""
 import csv
 import math
 from dataclasses import dataclass, field
@@ -16,21 +16,23 @@ REFERENCES = Path(__file__).resolve().parent / "references"
 
 @dataclass
 class Series:
-    """Runs that differ by the mesh. `meshes` are pairs of a label and either entries of the scene or a function of a folder that
-    makes a mesh of gmsh there. The first `quick` of them belong to --quick."""
+    """Runs that differ in the mesh.
+
+    `meshes` contains pairs of a label and either entries of the scene or a function folder -> entries that
+    makes a gmsh mesh there. The first `quick` meshes belong to --quick."""
     name: str
     meshes: list
-    scene: str = ""       # under xml/, if not that of the case
+    scene: str = ""       # under xml/; default: the scene of the case
     sets: tuple = ()
-    exact: object = None  # likewise
+    exact: object = None  # default: the solution of the case
     quick: int = 0
-    prescribed: Callable = None  # likewise
-    dimension: int = 0    # in how many directions meshes are refined, if not in all
+    prescribed: Callable = None  # default: the function of the case
+    dimension: int = 0    # number of refined directions; 0: all
 
 
 @dataclass
 class Bound:
-    """error <= most on the mesh with this label, which may have `unknowns` at most."""
+    """Bound error <= most on the mesh with this label and at most `unknowns` unknowns."""
     series: str
     mesh: str
     error: str
@@ -40,7 +42,8 @@ class Bound:
 
 @dataclass
 class Order:
-    """The observed order between the last two meshes of each series whose name contains `series` is at least `least`."""
+    """Lower bound `least` on the observed order between the last two meshes of each series whose name contains
+    `series`."""
     series: str
     error: str
     least: float
@@ -52,21 +55,22 @@ class Case:
     title: str
     scene: str
     series: list
-    errors: Callable      # of a run and its exact solution: {name: error}
-    prescribed: Callable  # of the points of all nodes: how many components of the displacement are no unknowns; None where there is none
+    errors: Callable      # function (run, exact solution) -> {name: error}
+    # function (points of all nodes) -> number of prescribed displacement components; None without displacements
+    prescribed: Callable
     headline: tuple       # series, mesh, error of the last line
-    jumps: Callable       # of a run and its exact solution: face means in global components [face, d]; None: the run estimates no error
-    orders: tuple         # the errors whose orders the last line has, "" where there is none
+    jumps: Callable       # function (run, exact solution) -> global face means [face, d]; None: without error estimate
+    orders: tuple         # errors whose orders are in the last line; "": none
     exact: object = None
     bounds: list = field(default_factory=list)
-    points: list = field(default_factory=list)  # given elsewhere: (label, unknowns, error)
-    unsure: tuple = ()    # (series, mesh, "jump" or "stress") whose estimate is off by more than the factor 2
-    called: tuple = ("u", "traction")  # the orders in the last line
-    picture: Callable = None           # draws one more picture into a file
+    points: list = field(default_factory=list)  # published values: (label, unknowns, error)
+    unsure: tuple = ()    # (series, mesh, "jump" or "stress") with an estimate off by more than a factor of 2
+    called: tuple = ("u", "traction")  # names of the orders in the last line
+    picture: Callable = None           # draws an additional picture into a file
 
 
 def on_box(low, high):
-    """Counts the components on nodes of the boundary of a box, where all of them are prescribed."""
+    """Returns a function that counts the displacement components on the boundary of a box, which are all prescribed."""
     def count(points):
         outside = (np.abs(points - low) < 1e-9 * (high - low)) | (np.abs(points - high) < 1e-9 * (high - low))
         return points.shape[1] * int(outside.any(axis=1).sum())
@@ -79,7 +83,7 @@ def turned_box(half, degrees):
 
 
 def gmsh(order, *makers):
-    """[(label, function)] of meshes of gmsh with cells of this order."""
+    """Returns [(label, function)] for gmsh meshes with cells of this order."""
     def entries(make):
         return lambda folder: (f"Mesh file.path={make(folder)}", f"Mesh file.order={order}")
     return [(label, entries(make)) for label, make in makers]
@@ -107,7 +111,7 @@ def crack_errors(run, known):
     return found
 
 
-GRADED = ((0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # h, size at the tip relative to it
+GRADED = ((0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # h, relative size at the tip
 
 
 def crack_series():
@@ -159,13 +163,13 @@ def penny():
 
 # Manufactured solutions
 
-# of coarse meshes, whose estimates are off by more than two
+# coarse meshes with estimates off by more than a factor of 2
 COARSE = {2: (("mixed quadrilateral 1", "n=8", "jump"),),
           3: (("uniform tetrahedron 1", "n=4", "jump"), ("uniform hexahedron 2", "n=4", "jump"))}
 
 
 def manufactured(dimension, cells):
-    """`cells`: {(shape, order): counts}; all regimes."""
+    """Case of all regimes; `cells` = {(shape, order): numbers of cells per edge}."""
     def jumps(run, known):
         return measure.face_means(known.jump, run.corners())
 
@@ -203,7 +207,7 @@ def mms3d():
 # Independent references
 
 def t_junction():
-    """Values of references/t_junction.py."""
+    """Case with reference values of references/t_junction.py."""
     integrals = np.loadtxt(REFERENCES / "t_junction.csv", delimiter=",")
     volume, slip = 22.823, 1.0722
     apertures, slips, loads = (0.24187, 0.28184, 0.25141), (3.513e-3, 16.20e-3, 39.51e-3), (118.67e6, 116.20e6, 98.46e6)
@@ -214,12 +218,12 @@ def t_junction():
             on, known = run.on(name), integrals[integrals[:, 0] == k]
             a, b = np.sort(run.corners()[on][:, :, axis], axis=1).T
             opened, slid = ((np.interp(b, known[:, 1], total) - np.interp(a, known[:, 1], total)) / (b - a) for total in known[:, 2:].T)
-            side = np.sign(run.data("jump")[on][:, 1 - axis] * run.data("jump local")[on][:, 0])  # of the normal
+            side = np.sign(run.data("jump")[on][:, 1 - axis] * run.data("jump local")[on][:, 0])  # sign of the normal
             means[on, axis], means[on, 1 - axis] = slid, opened * (side if axis else 1)
         return means
 
     def along(run, name, axis, values):
-        """A function of the coordinate along a fracture, linear between the centres of faces."""
+        """Returns a function of the coordinate along a fracture, linear between the face centres."""
         on = run.on(name)
         x = run.corners()[on].mean(axis=1)[:, axis]
         order = np.argsort(x)
@@ -266,7 +270,7 @@ def wavy():
                 "contact": abs((b - a)[pressure > 0].sum() / known.half_width - 1)}
 
     def prescribed(points):
-        """Components x of the nodes of both sides, component y of the nodes below."""
+        """Counts x components at the nodes of both sides and y components at the nodes of the lower end."""
         x, y = points.T
         return int((np.abs(x) < 1e-9).sum() + (np.abs(x - 0.5) < 1e-9).sum() + (np.abs(y + 2) < 1e-9).sum())
     sizes = [(f"h={h:g}", lambda folder, h=h: meshes.wavy(folder, h)) for h in (0.05, 0.025, 0.0125, 0.00625)]
@@ -277,7 +281,7 @@ def wavy():
 
 
 def free_sides():
-    """Reference of references/free_sides.py: quadratic elements graded towards the corners."""
+    """Case with the reference of references/free_sides.py: quadratic elements graded towards the corners."""
     rows = np.array([[float(word) for word in row] for row in csv.reader(open(REFERENCES / "free_sides.csv")) if row[0][0].isdigit()])
     (shear, load), profile = rows[0], rows[1:].T
 
@@ -291,7 +295,7 @@ def free_sides():
         return {"jump": measure.jump_error(run, jumps(run, None)), "shear force": abs(forces[0] / width / shear - 1), "load": abs(-forces[-1] / width / load - 1)}
 
     def prescribed(points):
-        """All components of the nodes below and above; in 3D those at the far end in y are tied, and not counted."""
+        """Counts all components of the lowest and highest nodes; in 3D without the tied nodes at the far end in y."""
         held = (np.abs(points[:, -1]) < 1e-9) | (np.abs(points[:, -1] - 1) < 1e-9)
         if points.shape[1] == 3:
             held &= points[:, 1] < 0.125 - 1e-9

@@ -1,12 +1,13 @@
-"""Exact displacements, jumps and tractions of the cases, as functions of arrays of points. Nothing of the program is used.
+"""Exact displacements, jumps and tractions of the cases, as functions of arrays of points, independent of the
+program.
 
-Signs as in docs/model/model.md: the normal n points from side - to side +, the jump is u+ - u-, tension is positive. G = shear
-modulus, nu = Poisson's ratio, plane strain in 2D."""
+Signs as in docs/model/model.md: the normal n points from side - to side +, the jump is u+ - u-, tension is
+positive. G = shear modulus, nu = Poisson's ratio, plane strain in 2D."""
 import math
 
 import numpy as np
 
-STEP = 1e-20  # imaginary, of a derivative without cancellation
+STEP = 1e-20  # complex step for derivatives without cancellation
 
 
 def lame(G, nu):
@@ -15,12 +16,14 @@ def lame(G, nu):
 
 
 class Crack:
-    """A straight crack of half-length 1 around the origin in the plane, turned by `angle` (degrees). `drop` is the normal (mode 1:
-    pressure) or shear (mode 2) stress that it releases. Westergaard's functions Z = s (z/r - 1), its integral s (r - z),
-    r = sqrt(z^2 - 1), z = x + iy; Sneddon (1946) for mode 1."""
+    """Straight crack of half-length 1 at the origin of the plane, rotated by `angle` (degrees).
+
+    `drop` is the released normal (mode 1: pressure) or shear (mode 2) stress s. Westergaard functions: Z = s
+    (z/r - 1), its integral s (r - z), r = sqrt(z^2 - 1), z = x + iy; mode 1 after Sneddon (1946)."""
 
     def __init__(self, mode, drop, G, nu, angle=0, uniform=(0, 0, 0), traction=(0, 0)):
-        """`uniform` is a stress XX, YY, XY whose displacement is added, `traction` the normal and tangential one on the crack."""
+        """`uniform`: stress XX, YY, XY whose displacement is added. `traction`: (normal, tangential) traction on
+        the crack."""
         self.mode, self.drop, self.G, self.nu, self.uniform = mode, drop, G, nu, uniform
         self.lam = lame(G, nu)
         self.exact_traction = np.array(traction, dtype=float)
@@ -45,20 +48,21 @@ class Crack:
         return local + points[:, :2] @ self.strain()
 
     def jump_mean(self, corners):
-        """Mean over each face [face, 2, 2]: of 2 (1 - nu) s/G sqrt(1 - x^2), from its integral; global components."""
+        """Mean of 2 (1 - nu) s/G sqrt(1 - x^2) over each face [face, 2, 2], from its integral; global components."""
         x = np.clip(corners @ self.tangent, -1, 1)
         integral = (x * np.sqrt(1 - x * x) + np.arcsin(x)) / 2
         mean = (integral[:, 1] - integral[:, 0]) / (x[:, 1] - x[:, 0]) * 2 * (1 - self.nu) * self.drop / self.G
         return np.outer(mean, self.normal if self.mode == 1 else self.tangent)
 
     def traction(self, points):
-        """Normal and tangential, the latter along `tangent`."""
+        """Normal and tangential traction, the latter along `tangent`."""
         return np.tile(self.exact_traction, (len(points), 1))
 
 
 class Penny:
-    """A disc of radius 1 in z = 0 under the pressure p; Sneddon (1946), in the closed form with Fabrikant's lengths
-    l1, l2 = (sqrt((r + 1)^2 + z^2) -+ sqrt((r - 1)^2 + z^2))/2."""
+    """Disc-shaped crack of radius 1 in z = 0 under the pressure p (Sneddon 1946).
+
+    The closed form uses Fabrikant's lengths l1, l2 = (sqrt((r + 1)^2 + z^2) -+ sqrt((r - 1)^2 + z^2))/2."""
 
     def __init__(self, p, G, nu):
         self.p, self.G, self.nu, self.lam = p, G, nu, lame(G, nu)
@@ -68,7 +72,8 @@ class Penny:
         r, side, z = np.hypot(x, y), np.where(z < 0, -1, 1), np.abs(z)
         far, near = np.hypot(r + 1, z), np.hypot(r - 1, z)
         l1, l2 = (far - near) / 2, (far + near) / 2
-        s, q = np.sqrt(np.maximum(1 - l1**2, 0)), np.sqrt(np.maximum(l2**2 - 1, 0))  # s q = z: the larger one gives the other
+        # s q = z: the larger one gives the other
+        s, q = np.sqrt(np.maximum(1 - l1**2, 0)), np.sqrt(np.maximum(l2**2 - 1, 0))
         s, q = np.where(s < q, z / np.maximum(q, 1e-300), s), np.where(q < s, z / np.maximum(s, 1e-300), q)
         angle, product = np.arcsin(np.minimum(1 / l2, 1)), np.maximum(far * near, 1e-300)
         radial = -(1 - 2 * self.nu) / 2 * (angle - q / l2**2) + z * s / (l2**2 * product)
@@ -81,10 +86,12 @@ class Penny:
 
 
 class Manufactured:
-    """Unit square or cube with the fracture x_d = 1/2, normal e_d: u = w0 + h c on side -, plus J = j + h (a, b) on side +,
-    h = x_d - 1/2. c makes sigma(w) n = (lambda_t, -N) on the fracture, a = -grad j_n and b = -lam/(lam + 2G) div j_t
-    make it the same on both sides. Derivatives are taken with imaginary steps. In the regime "uniform" all faces slide under
-    a traction that is the same everywhere, which tractions that are constant per face represent exactly."""
+    """Manufactured solution in the unit square or cube with the fracture x_d = 1/2 and normal e_d.
+
+    u = w0 + h c on side -, plus J = j + h (a, b) on side +, with h = x_d - 1/2. c is chosen such that sigma(w)
+    n = (lambda_t, -N) on the fracture; a = -grad j_n and b = -lam/(lam + 2G) div j_t give equal tractions on
+    both sides. Derivatives use complex steps. In the regime "uniform" all faces slide under a uniform traction,
+    which face-wise constant tractions represent exactly."""
     G, lam, friction, stiffness, dilation, gap, closure, normal_stiffness = 1, 1, 0.5, 2, math.tan(0.1), 0.02, 0.1, 5
 
     def __init__(self, dimension, regime):
@@ -117,7 +124,8 @@ class Manufactured:
     def displacement(self, points):
         x, d = points[:, :self.dimension].T.astype(complex), self.dimension
         h, s, on = x[-1].real - 0.5, x[:-1], np.concatenate([x[:-1], [0 * x[-1] + 0.5]])
-        gradient = [self.smooth(on + STEP * 1j * np.eye(d)[k][:, None]).imag / STEP for k in range(d)]  # [k][i] = du_i/dx_k
+        # [k][i] = du_i/dx_k
+        gradient = [self.smooth(on + STEP * 1j * np.eye(d)[k][:, None]).imag / STEP for k in range(d)]
         jumps = [self.law(s + STEP * 1j * np.eye(d - 1)[k][:, None])[3].imag / STEP for k in range(d - 1)]
         N, shear, _, jump = (np.asarray(value).real for value in self.law(s))
         bulk = self.lam * sum(gradient[k][k] for k in range(d)) + 2 * self.G * gradient[-1][-1]
@@ -128,21 +136,24 @@ class Manufactured:
         return (self.smooth(x).real + h * np.array(c) + np.where(h > 0, jump + h * np.array(slope), 0)).T
 
     def more(self, s):
-        """By how much side + is pressed more than side -, if other fields than the displacement differ there."""
+        """Additional compression on side + by fields other than the displacement."""
         return np.zeros(())
 
     def jump(self, points):
         return np.asarray(self.law(points[:, :self.dimension - 1].T.astype(complex))[3]).real.T
 
     def traction(self, points):
-        """Normal, then global tangential components x (and y)."""
+        """Normal traction, then global tangential components x (and y)."""
         N, shear = (np.asarray(value).real for value in self.law(points[:, :self.dimension - 1].T.astype(complex))[:2])
         return np.concatenate([[-N], shear]).T
 
 
 class Wavy:
-    """Two half planes with the gap 0.01 (1 - cos(2 pi x)) between them, pressed together by the mean pressure pb < p* =
-    pi G/(1 - nu) 0.01: they touch for |x| < a, sin^2(pi a) = pb/p*. Westergaard (1939); Johnson, Contact Mechanics, ch. 13."""
+    """Two half planes with the gap 0.01 (1 - cos(2 pi x)), pressed together by the mean pressure pb < p* = pi G/(1
+    - nu) 0.01.
+
+    They are in contact for |x| < a with sin^2(pi a) = pb/p*. Westergaard (1939); Johnson, Contact Mechanics,
+    ch. 13."""
     amplitude = 0.01
 
     def __init__(self, load, G, nu):
@@ -156,21 +167,22 @@ class Wavy:
         return 2 * self.full * np.cos(math.pi * x) * inside
 
     def pressure_mean(self, a, b):
-        """Over [a, b] in [0, 1/2], from the integral of the pressure."""
+        """Mean pressure over [a, b] in [0, 1/2], from the integral of the pressure."""
         root = math.sqrt(self.load)
         t = np.clip(np.sin(math.pi * np.stack([a, b])) / root, -1, 1)
         integral = self.full * self.load / math.pi * (t * np.sqrt(1 - t * t) + np.arcsin(t))
         return (integral[1] - integral[0]) / (b - a)
 
     def opening_mean(self, a, b):
-        """Of the normal jump over [a, b] in [0, 1/2]: -0.01 (1 - cos(2 pi x)) where the surfaces touch. The pressure is
-        transformed to waves, each of which opens the surfaces by 2 p/(k modulus)."""
+        """Mean normal jump over [a, b] in [0, 1/2]; it is -0.01 (1 - cos(2 pi x)) in the contact zone.
+
+        The Fourier modes of the pressure open the surfaces by 2 p/(k modulus) each."""
         n = 2**15
         x = np.arange(n) / n
         waves = np.fft.rfft(self.pressure(np.minimum(x, 1 - x)))
         k = 2 * math.pi * np.arange(len(waves))
         opening = np.fft.irfft(2 * waves / (self.modulus * np.maximum(k, 1)) * (k > 0), n)
-        opening -= opening[0]  # they touch at 0
+        opening -= opening[0]  # contact at x = 0
         ends = np.append(x, 1)
         primitive = np.append(0, np.cumsum((opening + np.roll(opening, -1)) / 2)) / n
         return (np.interp(b, ends, primitive) - np.interp(a, ends, primitive)) / (b - a)

@@ -1,4 +1,4 @@
-"""The cases of flow: scenes, meshes, what is measured on them, and the bounds."""
+"""Cases of flow: scenes, meshes, measured errors and bounds."""
 import csv
 import math
 from collections import namedtuple
@@ -12,7 +12,7 @@ import style
 from cases import REFERENCES, Bound, Case, Order, Series, gmsh, graded, uniform
 
 CALLED = ("pressure", "velocity")
-DIRECT = ("Solver.Linear solver.type=direct",)  # where errors are compared with rounding
+DIRECT = ("Solver.Linear solver.type=direct",)  # for errors close to round-off
 
 
 def boxes(d, counts):
@@ -20,7 +20,8 @@ def boxes(d, counts):
 
 
 def shapes(d):
-    """Entries by what they give: a scheme for each shape of cells, and another for quadrilaterals and hexahedra."""
+    """Entries by scheme and cell shape: one scheme for each shape, and a second one for quadrilaterals and
+    hexahedra."""
     simplex, cube = (("triangle", "quadrilateral"), ("tetrahedron", "hexahedron"))[d - 2]
     return {f"rt0 {simplex}": (f"Mesh.cell={simplex}",), f"tpfa {cube}": (f"Mesh.cell={cube}",), f"mimetic {cube}": (f"Mesh.cell={cube}", "Flow.scheme=mimetic")}
 
@@ -51,14 +52,14 @@ def mms_flow3d():
     return manufactured(3, (4, 8, 16), 2)
 
 
-# One fracture in a plane without end
+# One fracture in an infinite plane
 
 GRADED = ((0.4, 0.02), (0.2, 0.02), (0.1, 0.02), (0.05, 0.02))
 FINEST = graded(1, *GRADED)[-1][0]
 
 
 def around(name, parameter, values, known, scene):
-    """Series on uniform and graded meshes for usual values, on graded ones for extreme ones."""
+    """Series on uniform and graded meshes for moderate values, on graded meshes for extreme values."""
     series = []
     for value in values:
         sets = (*DIRECT, f"Tables.{parameter}.values={{{value:g}, {value:g}}}")
@@ -69,7 +70,7 @@ def around(name, parameter, values, known, scene):
 
 def flow_conductor():
     def errors(run, known):
-        """`centre`: of the flow through the two faces in the middle."""
+        """`centre`: error of the flow through the two faces in the middle."""
         places, along = run.corners().mean(axis=1), run.data("fluid flux")[:, 0]
         middle = np.argsort(np.abs(places[:, 0]))[:2]
         return {**all_errors(run, known), "centre": abs(np.mean(along[middle] / known.flow_in(places[middle])[:, 0]) - 1)}
@@ -81,7 +82,8 @@ def flow_conductor():
 
 def flow_barrier():
     def errors(run, known):
-        """What leaks, as the velocity in the cells below says it; the jump of the pressure from the cells on both sides."""
+        """Errors of leakage, from the velocity in the cells below, and of the pressure jump, from the cells on
+        both sides."""
         at, faces = run.corners(), np.arange(len(run.corners()))
         middle, size = at.mean(axis=1), np.linalg.norm(at[:, 1] - at[:, 0], axis=1)
         centres, velocity = flow_measure.corners(run).mean(axis=1), flow_measure.array(run, "Darcy velocity")[:, :2]
@@ -96,14 +98,15 @@ def flow_barrier():
     bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 1), ("velocity", 0.5))]
     bounds += [Order("graded", name, 1) for name in ("jump", "leakage")] + [Order("U", name, 0.75) for name in ("jump", "leakage")]
     bounds += [Bound(one.name, FINEST, "leakage", 2e-3) for one in series]
-    bounds += [Bound(one.name, label, "at faces", 0.4) for one in series for label, _ in one.meshes]  # not zero, nor backwards, anywhere
+    # positive everywhere
+    bounds += [Bound(one.name, label, "at faces", 0.4) for one in series for label, _ in one.meshes]
     return case("flow_barrier", "flow around and through a fracture that resists it", series, errors, ("c0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
 
 
 # Wells
 
 def flow_well(d, counts):
-    """The drawdown at the well, which is that from the middles of the sides to its radius; 4:1 is the anisotropy across the well."""
+    """Drawdown at the well, between its radius and the middles of the sides; 4:1 is the anisotropy across the well."""
     def errors(run, _):
         return {"in well": max(abs(run.results["steps"][-1]["wells"]["well"]["pressure"]) / math.log(0.5 / 0.001), 1e-17)}
     rock = {1: (), 4: (f"Materials.rock.permeability={{4, 1{', 1' * (d - 2)}}}", f"Tables.a.values={{{2**0.5!r}, {2**0.5!r}}}")}
@@ -129,7 +132,8 @@ def flow_patch():
     transmissivity = {2: dict(zip(meshes.NETWORK, (2 / 3, 3, 1e-5))), 3: dict(zip("xyz", (2 / 3, 3, 1e-5)))}
 
     def errors(run, known):
-        """Pressures against the largest, velocities and flows against the gradient; exact but for rounding."""
+        """Errors of pressures relative to the largest, of velocities and flows relative to the gradient; exact up
+        to round-off."""
         d, T = run.dimension, np.empty(len(run.faces.polygons))
         for name, value in transmissivity[d].items():
             T[run.on(name)] = value
@@ -148,20 +152,22 @@ def flow_patch():
 
 # Published benchmarks
 
-# where, by the axis that the reference counts or along the line (None); `jumps` are values at fractures across which the pressure jumps
+# `axis`: coordinate axis used by the reference; None: along the line. `jumps`: indices of values at fractures
+# with a pressure jump.
 Line = namedtuple("Line", "name start end axis jumps", defaults=[()])
 
 
 class Lines:
-    """Pressures along lines and their references, and the mean pressure in the rock as a program of others has it, if it is known;
-    `profiles` keeps what was measured, for pictures."""
+    """Pressures along lines with their references. `mean`: mean rock pressure of another program, if known.
+
+    `profiles` stores measured pressures for the figures."""
 
     def __init__(self, mobility, *lines, mean=None):
         self.mobility, self.lines, self.mean, self.profiles = mobility, lines, mean, []
 
     @staticmethod
     def reference(line):
-        """Fractions of the line, values, and the edges of the band (nan where there is none)."""
+        """Returns fractions of the line, values, and the limits of the band (nan without a band)."""
         with open(REFERENCES / "flow_benchmarks.csv", newline="") as file:
             rows = [row for row in csv.reader(file) if row[0] == line.name]
         at, value, low, high = np.array([[float(word or "nan") for word in row[2:6]] for row in rows]).T
@@ -170,8 +176,8 @@ class Lines:
         return (at if line.axis is None else at - start[line.axis]) / length, value, low, high
 
     def errors(self, run):
-        """The difference from the reference, of the root mean square over the range, on the worst line; how many points lie out
-        of the band."""
+        """Errors: root mean square of the difference relative to the range, on the worst line; number of points
+        outside the band."""
         worst, outside, banded, profile = 0.0, 0, False, []
         for line in self.lines:
             start, end = np.array(line.start, dtype=float), np.array(line.end, dtype=float)
@@ -192,7 +198,7 @@ class Lines:
 
 
 def draw_lines(series, file):
-    """Pressures along each line, of all meshes of all series that have it; finer meshes are darker."""
+    """Draws the pressures along each line, for all series that contain it; finer meshes are darker."""
     every = {line.name: line for one in series for line in one.exact.lines}
     figure, all_axes = style.plt.subplots(1, len(every), figsize=(4.3 * len(every), 3.4), squeeze=False)
     for axes, line in zip(all_axes[0], every.values()):
@@ -213,8 +219,10 @@ def draw_lines(series, file):
 
 
 def benchmark(name, title, series, most, headline, banded=False):
-    """`most`, by the start of a series' name, are bounds on the difference on the last mesh of --quick and on the last of all; on that
-    nothing may lie out of a band."""
+    """Case of a published benchmark.
+
+    `most` = {beginning of a series name: bounds on the difference for the last mesh of --quick and the last
+    mesh}. With `banded`, all points of the last mesh must lie in the band."""
     bounds = [Bound(one.name, label, "line", value) for one in series for start, values in most.items() if one.name.startswith(start)
               for label, value in zip((one.meshes[one.quick - 1][0], one.meshes[-1][0]), values)]
     if banded:
@@ -256,7 +264,7 @@ def flow_single():
 
 
 def tight(points):
-    """Mobility of the regular network in 3D."""
+    """Mobility of the 3D regular network."""
     x, y, z = points.T
     parts = ((x > 0.5) & (y < 0.5)) | ((x > 0.75) & (y > 0.5) & (y < 0.75) & (z > 0.5)) \
         | ((x > 0.625) & (x < 0.75) & (y > 0.5) & (y < 0.625) & (z > 0.5) & (z < 0.75))

@@ -1,20 +1,20 @@
-"""Exact pressures of the cases of flow, Darcy velocities, pressures in fractures and flows along them, as functions of arrays of
-points. Nothing of the program is used.
+"""Exact pressures and flows of the flow cases, as functions of arrays of points, independent of the program.
 
-Each has pressure and velocity [point, d] in the rock, and in fractures pressure_in and flow_in [point, d]: the flow of all of the
-aperture, transmissivity times the gradient. kappa = permeability/viscosity."""
+Solutions have `pressure` and Darcy `velocity` [point, d] in the rock; in fractures `pressure_in` and `flow_in`
+[point, d], the flow through the whole aperture: transmissivity times pressure gradient. kappa =
+permeability/viscosity."""
 import numpy as np
 
-STEP = 1e-20  # imaginary, of a derivative without cancellation
+STEP = 1e-20  # complex step for derivatives without cancellation
 
 
 def root(z):
-    """sqrt(z^2 - 1), cut on [-1, 1]."""
+    """sqrt(z^2 - 1) with the branch cut [-1, 1]."""
     return np.sqrt(z - 1) * np.sqrt(z + 1)
 
 
 class Potential:
-    """Re w(z), z = x + iy, kappa = 1; the gradient is the conjugate of w'."""
+    """Pressure Re w(z), z = x + iy, kappa = 1; its gradient is the conjugate of w'."""
 
     def pressure(self, points):
         return self.potential(points @ (1, 1j))[0].real
@@ -25,9 +25,11 @@ class Potential:
 
 
 class Conductor(Potential):
-    """A fracture |x| < 1, y = 0 of transmissivity T0 sqrt(1 - x^2) and the pressure -x far away: along it the pressure is
-    -(1 - B) x with B = T0/(T0 + 2), which balances what flows in from both sides."""
-    scale = 1  # of pressures in the fracture, which may be next to nothing
+    """Fracture |x| < 1, y = 0 of transmissivity T0 sqrt(1 - x^2), with the pressure -x far away.
+
+    The pressure along the fracture is -(1 - B) x with B = T0/(T0 + 2), which balances the inflow from both
+    sides."""
+    scale = 1  # scale of pressures in the fracture, which may almost vanish
 
     def __init__(self, T0):
         self.T0, self.kept = T0, 2 / (T0 + 2)  # 1 - B without cancellation
@@ -49,8 +51,9 @@ class Conductor(Potential):
 
 
 class Barrier(Potential):
-    """A fracture |x| < 1, y = 0 of conductance c0/sqrt(1 - x^2) across it, and the pressure -y far away: beta = 1/(1 + 2 c0) of the
-    flow goes around, the rest leaks, everywhere the same."""
+    """Fracture |x| < 1, y = 0 of normal conductance c0/sqrt(1 - x^2), with the pressure -y far away.
+
+    The part beta = 1/(1 + 2 c0) of the flow passes around the fracture; the rest is a uniform leakage."""
 
     def __init__(self, c0):
         self.leakage = 2 * c0 / (1 + 2 * c0)
@@ -60,12 +63,12 @@ class Barrier(Potential):
         return 1j * (self.leakage * z + beta * r), 1j * (self.leakage + beta * z / r)
 
     def jump(self, points):
-        """p+ - p-."""
+        """Pressure jump p+ - p-."""
         return -2 * (1 - self.leakage) * np.sqrt(np.maximum(1 - points[:, 0]**2, 0))
 
 
 class Linear:
-    """Pressure 1 + G.x in fractures of transmissivity T, kappa = 1; in a fracture with the normal n (one for each point)."""
+    """Pressure 1 + G.x with fractures of transmissivity T, kappa = 1; `normals` has a fracture normal per point."""
 
     def __init__(self, G):
         self.G = np.array(G, dtype=float)
@@ -83,9 +86,12 @@ class Linear:
 
 
 class Manufactured:
-    """Unit square or cube with the fracture x_d = 1/2. In it the pressure is f; from the rock on each side the fluid g enters it,
-    which takes a difference of pressure g/C where the fracture resists, none else: with h = x_d - 1/2 the pressure in the rock is
-    (f + g/C) cos 2h +- g/(2 kappa) sin 2h, + on side +. Derivatives are taken with imaginary steps."""
+    """Manufactured solution in the unit square or cube with the fracture x_d = 1/2 and the pressure f in the
+    fracture.
+
+    The inflow g from each side requires a pressure difference g/C with a normal resistance, else none. With h =
+    x_d - 1/2, the pressure in the rock is (f + g/C) cos 2h +- g/(2 kappa) sin 2h, + on side +. Derivatives use
+    complex steps."""
     kappa = 2
 
     def __init__(self, dimension, resists):
@@ -97,7 +103,7 @@ class Manufactured:
         return 1 + np.sin(2 * x + y), 0.5 + np.cos(x + 2 * y), np.sin(3 * x - y) - 0.3, 2 + x, 4 + 2 * x
 
     def at(self, x):
-        """The pressure at points x [d, n], complex."""
+        """Pressure at points x [d, n], complex."""
         f, below, above, _, C = self.on(x[:-1])
         h = x[-1] - 0.5
         g = np.where(h.real > 0, above, below)

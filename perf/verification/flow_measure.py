@@ -1,4 +1,4 @@
-"""Measures the results of flow against exact functions, and along lines, from the files that a run wrote."""
+"""Errors of flow results relative to exact functions, and pressures along lines, from the output files of a run."""
 import math
 
 import numpy as np
@@ -6,22 +6,22 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from measure import CELLS, SIMPLICES, cube_rule, face_points, relative, simplex_rule
 
-INSIDE = 1e-9  # of the size of a cell: a point on a face belongs to both cells
+INSIDE = 1e-9  # relative to the cell size: a point on a face belongs to both cells
 
 
 def array(run, name):
-    """Of the cells of the rock."""
+    """Array of the rock cells."""
     return vtk_to_numpy(run.rock.GetCellData().GetArray(name))
 
 
 def corners(run):
-    """[cell, corner, coordinates]."""
+    """Corners of cells, [cell, corner, coordinates]."""
     nodes = vtk_to_numpy(run.rock.GetCells().GetConnectivityArray()).reshape(run.rock.GetNumberOfCells(), -1)
     return vtk_to_numpy(run.rock.GetPoints().GetData())[:, :run.dimension][nodes]
 
 
 def cell_points(run):
-    """Quadrature points [cell, q, d] and weights [cell, q], which sum to the volume."""
+    """Quadrature points [cell, q, d] and weights [cell, q]; the weights of a cell sum to its volume."""
     kind, d = run.rock.GetCellType(0), run.dimension
     cell, at = CELLS[kind](), corners(run)
     placed, volumes = [], []
@@ -35,20 +35,20 @@ def cell_points(run):
 
 
 def known_at(function, points):
-    """[entity, q, components]."""
+    """Values of a function at quadrature points, [entity, q, components]."""
     values = function(points.reshape(-1, points.shape[-1]))
     return values.reshape(*points.shape[:-1], -1)
 
 
 def mean_error(values, function, points, weights, scale=None):
-    """Relative L2 error of means over cells or faces; with a scale, absolute error of them over it."""
+    """Relative L2 error of means over cells or faces; with `scale`, their absolute error divided by the scale."""
     volume = weights.sum(axis=1)
     means = (weights[:, :, None] * known_at(function, points)).sum(axis=1) / volume[:, None]
     return relative(values - means, means if scale is None else np.full_like(means, scale), volume)
 
 
 def rock_errors(run, exact):
-    """Pressure: of means over cells; velocity: of what is constant in each cell against what varies."""
+    """Relative L2 errors of mean pressures of cells, and of cell-wise constant velocities."""
     points, weights = cell_points(run)
     velocity = array(run, "Darcy velocity")[:, None, :run.dimension]
     known = known_at(exact.velocity, points)
@@ -75,7 +75,7 @@ def normals(run):
 
 
 def holding(run):
-    """A function of a point: the cells that it lies in or on. Simplices and parallelepipeds."""
+    """Returns a function of a point that finds the cells containing it; for simplices and parallelepipeds."""
     at, d = corners(run), run.dimension
     ends = {3: (1, 2), 4: (1, 3) if d == 2 else (1, 2, 3), 8: (1, 3, 4)}[at.shape[1]]
     inverse = np.linalg.inv(np.stack([at[:, k] - at[:, 0] for k in ends], axis=2))
@@ -89,8 +89,9 @@ def holding(run):
 
 
 def pressure_along(run, places, mobility):
-    """At points [n, d]: linear in each cell, as its Darcy velocity says; the mean where cells meet. `mobility` is
-    permeability/viscosity at the centres of cells."""
+    """Pressures at points [n, d], linear in each cell by its Darcy velocity; the mean at common faces.
+
+    `mobility` is a function that returns permeability/viscosity at cell centres."""
     find, centres = holding(run), corners(run).mean(axis=1)
     slopes = -array(run, "Darcy velocity")[:, :run.dimension] / mobility(centres)[:, None]
     p, values = array(run, "pressure"), []
@@ -101,7 +102,7 @@ def pressure_along(run, places, mobility):
 
 
 def at_faces(run, faces, side):
-    """The cells that have these fracture faces (2D) on the side to which `side` points, by the middle of their edges."""
+    """Cells adjacent to these fracture faces (2D) on the side of the direction `side`, matched by edge midpoints."""
     at, middles = corners(run), run.corners()[faces].mean(axis=1)
     n = at.shape[1]
     edges = np.concatenate([(at[:, k] + at[:, (k + 1) % n]) / 2 for k in range(n)])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the scenes of flow of this measurement into xml/verification, with their coarse meshes. Needs SymPy and gmsh."""
+"""Writes the flow scenes of this measurement and their coarse meshes into xml/verification. Requires SymPy and gmsh."""
 import sys
 
 import make_scenes
@@ -12,7 +12,8 @@ def write(name, comment, content):
 
 
 def scene(mesh, joints, fractures, conditions, rocks=None, regions=None, fluid=None):
-    """`joints` are materials by name, `fractures` their names for each fracture, or a section."""
+    """Content of a scene. `joints`: materials by name; `fractures`: for each fracture its material name or its
+    section."""
     content = {**mesh, "Materials": {**{name: {"type": "elastic", "permeability": [k]} for name, k in (rocks or {"rock": 1.0}).items()},
                                      **{name: {"type": "joint", **joint} for name, joint in joints.items()}},
                "Bulk": {"material": "rock"}, "Flow": {"rigid rock": True, "viscosity": 1.0, **(fluid or {})}}
@@ -23,7 +24,7 @@ def scene(mesh, joints, fractures, conditions, rocks=None, regions=None, fluid=N
 
 
 def box(d, n, fractures, regions=None, **more):
-    """Cells of the unit square or cube; fractures {name: (lower corner, upper corner)}."""
+    """Mesh section of the unit square or cube; fractures {name: (lower corner, upper corner)}."""
     def corners(of):
         return {name: {"lower corner": list(low), "upper corner": list(high)} for name, (low, high) in of.items()}
     mesh = {"cell": ("triangle", "tetrahedron")[d - 2], "lower corner": [0.0] * d, "upper corner": [1.0] * d, "cells": [n] * d, **more}
@@ -37,7 +38,7 @@ def sides(d):
 
 
 def across(d, axis, at, low=0.0, high=1.0):
-    """Corners of the square, or line, of a plane x_axis = at."""
+    """Corners of a line or square in the plane x_axis = at."""
     return [at if k == axis else low for k in range(d)], [at if k == axis else high for k in range(d)]
 
 
@@ -59,7 +60,8 @@ def manufactured_solutions():
 
 
 def potential(r, kept, along, part):
-    """-kept times a coordinate less the rest times the part of sqrt(z^2 - 1) along it."""
+    """Expression -kept * along - (1 - kept) * r[part], with the real or imaginary part of sqrt(z^2 - 1) along the
+    coordinate."""
     return f"-({kept})*{along} - (1 - ({kept}))*{r[part]}"
 
 
@@ -111,7 +113,10 @@ def regular():
 
 
 def wells():
-    """Radial flow to the middle, exact on the sides: in x/a and y a it is isotropic, where the hole has a mean radius of (a + 1/a)/2 of its own."""
+    """Radial flow to a well in the middle, exact on the sides.
+
+    In the coordinates x/a and y a the flow is isotropic. The mean radius of the well is (a + 1/a)/2 times its
+    radius there."""
     for d in (2, 3):
         middle = [[0.5, 0.5], [0.5, 0.5, 0.0, 0.5, 0.5, 1.0]][d - 2]
         pressure = "0.5*log(((x-0.5)/a(0))^2+((y-0.5)*a(0))^2)-log(0.001*(a(0)+1/a(0))/2)"

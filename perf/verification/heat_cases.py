@@ -1,4 +1,4 @@
-"""The cases of heat: scenes, meshes, what is measured on them, and the bounds."""
+"""Cases of heat: scenes, meshes, measured errors and bounds."""
 import math
 
 import numpy as np
@@ -11,7 +11,7 @@ from poro_cases import SCHEMES, SHAPES, numbers
 from poro_fractures import opened_errors
 
 CALLED = ("temperature", "")
-VELOCITY, DIFFUSIVITY, DAY = 8e-6, 3e-6, 1e6  # m/s, m^2/s, s: of the front
+VELOCITY, DIFFUSIVITY, DAY = 8e-6, 3e-6, 1e6  # of the front: m/s, m^2/s, s
 erfc = np.vectorize(math.erfc)
 
 
@@ -30,7 +30,7 @@ def temperature_error(run, exact):
 
 
 def heat_half_space():
-    """300 + 50 erf(x/sqrt(4 kappa t)) after 1e7 s (Carslaw and Jaeger 1959, section 2.4)."""
+    """Cooling of a half-space: 300 + 50 erf(x/sqrt(4 kappa t)) after 1e7 s (Carslaw and Jaeger 1959, section 2.4)."""
     def errors(run, _):
         return temperature_error(run, lambda x: 50 - 50 * erfc(x / math.sqrt(4e-6 * 1e7)) + 300)
     series = [Series(f"{cell}", [(f"n={n}", (f"Mesh.cells={numbers([n] + [n // 30] * (d - 1))}", f"Time.steps={n}")) for n in (30, 60, 120)],
@@ -41,8 +41,10 @@ def heat_half_space():
 
 
 def heat_front():
-    """What enters at x = 0 at 1 K, by flow and conduction (Ogata and Banks 1961). With cells of 0.75 m, n = 40, errors of space and
-    time happen to cancel."""
+    """Front of fluid at 1 K that enters at x = 0, with advection and conduction (Ogata and Banks 1961).
+
+    With cells of 0.75 m (n = 40) spatial and temporal errors happen to cancel; therefore the series begins at n
+    = 80."""
     def exact(x):
         width = 2 * math.sqrt(DIFFUSIVITY * DAY)
         return 0.5 * (erfc((x - VELOCITY * DAY) / width) + np.exp(np.minimum(VELOCITY * x / DIFFUSIVITY, 600)) * erfc((x + VELOCITY * DAY) / width))
@@ -57,7 +59,7 @@ def heat_front():
     return case("heat-front", "a front that is carried", series, errors, ("quadrilateral second order", "n=160", "temperature"), bounds)
 
 
-# A fracture that slides and opens
+# Sliding and opening fracture
 
 def sliding_errors(run, known):
     points, weights = measure.face_points(run.corners())
@@ -67,7 +69,7 @@ def sliding_errors(run, known):
 
 
 def sliding(d, kind, cell, *grids, advection="upwind", quick=0):
-    """`grids` are pairs of the cells along each edge and steps."""
+    """Series; `grids` contains pairs (cells along each edge, time steps)."""
     meshes = [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}", f"Time.steps={steps}")) for n, steps in grids]
     name = f"{cell} {kind}" if advection == "upwind" else f"{cell} {advection}"
     return Series(name, meshes, f"verification/manufactured_heat_{kind}_{d}d.xml", (f"Mesh.cell={cell}", f"Heat.advection={advection}"),
@@ -75,9 +77,13 @@ def sliding(d, kind, cell, *grids, advection="upwind", quick=0):
 
 
 def heat_sliding(d, series, fine):
-    """`fine`: errors of temperature and jump on the last mesh, by series. What flows makes all orders those of upwind flow in the end; so they
-    are asked of temperatures alone where heat is carried."""
-    bounds = [Order("conducted", name, 1.75) for name in ("temperature", "T in", "in fracture", "jump", "centre")]  # 2 on finer meshes
+    """Case of the manufactured solution; `fine` = {series: bounds on the errors of temperature and jump on the
+    last mesh}.
+
+    With advection, upwind flow eventually determines the order of all errors. For these series, only the
+    temperature is required to reach the order of the scheme."""
+    # 2 on finer meshes
+    bounds = [Order("conducted", name, 1.75) for name in ("temperature", "T in", "in fracture", "jump", "centre")]
     bounds += [Order(one.name, name, 1) for one in series for name in ("flow", "traction")]
     bounds += [Order(one.name, name, 2) for one in series for name in ("pressure", "u")]
     bounds += [Order("carried", "temperature", 1), Order("second order", "temperature", 1.5)]
@@ -88,7 +94,9 @@ def heat_sliding(d, series, fine):
 
 
 def heat_mms2d():
-    """In steps as the square of the size of cells; of second order in such that nothing is carried over more than a cell."""
+    """Case with a number of steps proportional to the square of the number of cells along an edge.
+
+    For second-order advection the steps are shorter, so that the Courant number is below 1."""
     grids = ((8, 1), (16, 4), (32, 16))
     series = [sliding(2, kind, cell, *grids, quick=2 * (cell == "triangle")) for kind in ("conducted", "carried") for cell in SHAPES[2]]
     series.append(sliding(2, "carried", "quadrilateral", (6, 24), (12, 48), (24, 96), advection="second order"))
@@ -102,7 +110,7 @@ def heat_mms3d():
 
 
 def sliding_time_errors(run, known):
-    """The worst of all cells and faces."""
+    """Largest relative error over all cells and faces."""
     def worst(name, values, exact):
         return {name: np.abs(values / exact - 1).max()}
     return {**worst("pressure", flow_measure.array(run, "pressure"), known.pressure), **worst("in fracture", run.data("fracture pressure"), known.pressure),
@@ -111,7 +119,7 @@ def sliding_time_errors(run, known):
 
 
 def heat_time():
-    """A solution that is the same everywhere: the errors are those of steps."""
+    """Spatially uniform solution, with errors of the time steps only."""
     steps = [(f"{n} steps", (f"Time.steps={n}",)) for n in (20, 40, 80)]
     series = [Series(f"{cell} {scheme}", steps, f"verification/heat_time_{d}d.xml", (f"Mesh.cell={cell}", *entries), heat_exact.SlidingInTime(), 2 * (d == 2))
               for scheme, (_, entries) in SCHEMES.items() for d, cell in ((2, "quadrilateral"), (3, "tetrahedron"))]

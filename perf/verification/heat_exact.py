@@ -1,4 +1,4 @@
-"""Exact solutions of rock and fractures with heat, at t = 1. Nothing of the program is used."""
+"""Exact solutions of rock and fractures with heat, independent of the program."""
 import numpy as np
 
 import exact
@@ -6,12 +6,20 @@ import flow_exact
 
 
 class Sliding(flow_exact.Manufactured, exact.Manufactured):
-    """Unit square or cube with the fracture x_d = 1/2, which slides under the normal traction N = t N_1 by s = t s_1 along m, and opens by
-    tan theta s. Pressures are those of flow_exact.Manufactured without resistance, times t; fluid enters the fracture from below and leaves
-    it above, and carries the heat capacity `carried`, c. In the fracture the temperature is 3 + t (2 + sin(2x - y)), in the rock beside it higher by e: with H = 2 k_f/a_0 what conducts
-    through half of the fracture and c g what flows through its side, the fracture gets (H + c g) e from a side from which fluid comes, and
-    H e where it leaves; there the rock loses (H - c g) e. e is given below, and above is what the balance of the fracture asks for:
-    sum = c_f a dT/dt + c q.grad T - div(a_0 k_f grad T) - (friction - tan theta) N ds/dt. In the rock temperatures vary as pressures do."""
+    """Manufactured solution at t = 1 in the unit square or cube; the fracture x_d = 1/2 slides and opens.
+
+    The normal traction is N = t N_1, the slip s = t s_1 along m, the dilation tan theta s. Pressures are those
+    of flow_exact.Manufactured without resistance, times t. Fluid with the volumetric heat capacity c =
+    `carried` enters the fracture from below and leaves it above.
+
+    The fracture temperature is 3 + t (2 + sin(2x - y)); the adjacent rock is warmer by e. H = 2 k_f/a_0 is the
+    conductance of half of the fracture, c g the heat capacity flux through its side. From a side with inflow
+    the fracture receives (H + c g) e, else H e. The rock of an outflow side loses (H - c g) e. Below, e is
+    given; above, it follows from the heat balance of the fracture:
+
+        sum = c_f a dT/dt + c q.grad T - div(a_0 k_f grad T) - (friction - tan theta) N ds/dt
+
+    In the rock, temperatures vary like the pressures."""
     alpha, porosity, expansion, start = 0.5, 0.1, 0.05, 3
     conductivity, filling, in_fracture, tangent = 3, 1, 2, 0.2
 
@@ -31,7 +39,7 @@ class Sliding(flow_exact.Manufactured, exact.Manufactured):
         return 0.8 + np.cos(2 * s[0] + (s[1] if len(s) > 1 else 0)) / 5
 
     def contact(self, s):
-        """N and the direction of sliding."""
+        """Normal compression N and the direction of sliding."""
         x, y = s[0], s[1] if len(s) > 1 else 0
         angle = 0.5 + x - y / 2
         return 0.6 + 0.2 * np.sin(2 * x + y), np.array([np.cos(angle), np.sin(angle)]) if len(s) > 1 else np.array([1 + 0 * x])
@@ -40,7 +48,7 @@ class Sliding(flow_exact.Manufactured, exact.Manufactured):
         return 2 + np.sin(2 * s[0] - (s[1] if len(s) > 1 else 0))
 
     def excess(self, s):
-        """Of the rock below and above, over the fracture."""
+        """Excess temperature of the rock below and above over the fracture."""
         f, below, _, T, _ = self.on(s)
         through, y = 2 * self.in_fracture, s[1] if len(s) > 1 else 0
         first, waves = (1 + s[0]) / 2, np.sin(2 * s[0] - y)
@@ -62,7 +70,7 @@ class Sliding(flow_exact.Manufactured, exact.Manufactured):
         return (3 * self.lam + 2 * self.G) * self.expansion * T
 
     def law(self, s):
-        """N less what pressure and temperature do to the rock below."""
+        """Terms of exact.Manufactured; N is reduced by the pressure and the thermal stress of the rock below."""
         N, along = self.contact(s)
         shear, slip = self.friction * N * along, self.slip(s)
         push = N + (1 - self.alpha) * self.on(s)[0] - self.stress_by(self.warm(s) + self.excess(s)[0])
@@ -73,23 +81,26 @@ class Sliding(flow_exact.Manufactured, exact.Manufactured):
         return self.stress_by(below - above)
 
     def traction(self, points):
-        """Of the contact."""
+        """Contact traction."""
         s = points[:, :-1].T
         N, along = self.contact(s)
         return np.concatenate([[-N], self.friction * N * along]).T
 
 
 class SlidingInTime:
-    """At t = 1/2, of a block of height 1 whose fracture slides by s = (1 - cos 2t)/4 under the compression N and opens by `tangent` s, at the
-    pressure sin 3t: everything is the same everywhere. Its friction warms the fracture, c a dT/dt = (friction - tangent) N ds/dt with
-    a = a_0 + tangent s, as fast as a source does the rock; the top moves by s along and by what keeps N across."""
+    """Uniform solution at t = 1/2 in a block of height 1 with a sliding fracture.
+
+    Under the compression N the slip is s = (1 - cos 2t)/4, the opening `tangent` s, the pressure sin 3t.
+    Friction heats the fracture, c a dT/dt = (friction - tangent) N ds/dt with a = a_0 + tangent s; a source
+    heats the rock at the same rate. The top moves by s tangentially and, in normal direction, such that N stays
+    constant."""
     friction, N, tangent, a_0, c, start = 0.6, 2.0, 0.2, 0.5, 1.0, 3.0
     alpha, expansion, fluid_expansion, stored, porosity = 0.5, 0.05, 0.1, 0.5, 0.1
     slip, pressure = (1 - np.cos(1)) / 4, np.sin(1.5)
 
     @property
     def rise(self):
-        """The temperature, less that of the start, over ln(a/a_0)."""
+        """Temperature rise divided by ln(a/a_0)."""
         return (self.friction - self.tangent) * self.N / (self.c * self.tangent)
 
     @property

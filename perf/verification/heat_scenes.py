@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the scenes of heat of this measurement into xml/verification. Needs SymPy."""
+"""Writes the heat scenes of this measurement into xml/verification. Requires SymPy."""
 import math
 import sys
 
@@ -28,7 +28,8 @@ def sliding_fractures():
 
 
 def sliding_in_time():
-    """Of heat_exact.SlidingInTime: nothing but steps causes errors. Lame's constants are 1, and M = 3."""
+    """Writes the scenes of heat_exact.SlidingInTime, with errors of the time steps only. Lame's constants are 1,
+    and M = 3."""
     known = heat_exact.SlidingInTime()
     slip, slides, p, flows = "(1-cos(2*t))/4", "sin(2*t)/2", "sin(3*t)", "3*cos(3*t)"
     opens = f"{known.tangent!r}*{slides}"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the scenes of this measurement into xml/verification, with their coarse meshes. Needs SymPy and gmsh."""
+"""Writes the scenes of this measurement and their coarse meshes into xml/verification. Requires SymPy and gmsh."""
 import math
 import sys
 from pathlib import Path
@@ -35,7 +35,7 @@ def write(name, comment, content, writer="make_scenes.py", time=None):
 
 
 def scene(mesh, rock, joint, fractures, conditions, bulk={}, fluid={}):
-    """`fluid` are entries of all fractures."""
+    """Content of a scene; `fluid` contains entries for all fractures."""
     return {**mesh, "Materials": {"rock": {"type": "elastic", **rock}, "joint": {"type": "joint", **joint}},
             "Bulk": {"material": "rock", **bulk}, "Fractures": {name: {"material": "joint", **fluid} for name in fractures},
             "Boundary conditions": conditions}
@@ -47,13 +47,15 @@ def mesh_file(name, *fractures, normal=None):
 
 
 def around(displacement):
-    """The condition of a box on whose boundary the displacement is known."""
+    """Boundary condition of a box with known displacement."""
     return {"exact": {"boundary": "boundary", "displacement": displacement}}
 
 
 def crack_displacement(mode, factor, nu, x="x", y="y"):
-    """Along and across the crack, of exact.Crack with drop/(2G) = factor, as expressions; x and y are along and across. The
-    square root r of w = z^2 - 1 has the signs of x and y in its real and imaginary part: sqrt((|w| +- Re w)/2)."""
+    """Expressions for the displacement of exact.Crack along and across the crack, with drop/(2G) = factor.
+
+    x and y are the coordinates along and across. The square root r of w = z^2 - 1 has the signs of x and y in
+    its real and imaginary part: sqrt((|w| +- Re w)/2)."""
     w = f"({x}^2-{y}^2-1)"
     size = f"sqrt((({x}-1)^2+{y}^2)*(({x}+1)^2+{y}^2))"
     real = f"({x}<0 ? -1 : 1)*sqrt(max({size}+{w},0)/2)"
@@ -92,7 +94,7 @@ def cracks():
 
 
 def penny_displacement(p, nu):
-    """Of exact.Penny under the pressure p, shear modulus 1, as expressions."""
+    """Expressions for the displacement of exact.Penny under the pressure p, with shear modulus 1."""
     far, near, r = "sqrt((r+1)^2+z^2)", "sqrt((r-1)^2+z^2)", "sqrt(x^2+y^2)"
     l1, l2 = f"(({far}-{near})/2)", f"(({far}+{near})/2)"
     root, out = f"sqrt(max(1-{l1}^2,0))", f"sqrt(max({l2}^2-1,0))"

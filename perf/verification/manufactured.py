@@ -1,5 +1,6 @@
-"""Displacement and body force of the manufactured solution as expressions of a scene, by symbolic differentiation. See
-exact.Manufactured, which states the construction and shares nothing with this."""
+"""Displacement and body force of the manufactured solution as expressions of a scene, by symbolic differentiation.
+
+The construction is described in exact.Manufactured; no code is shared with it."""
 import sympy as sp
 
 COORDINATES = sp.symbols("x y z", real=True)
@@ -14,7 +15,8 @@ def stress(u, x):
 
 
 def displacements(dimension, N, shear, tangential, normal, more=0, size=1):
-    """Of side - and of side +, for a traction N, on side + N + more, shear and a jump on the fracture."""
+    """Displacements of side - and side + for a given jump and traction on the fracture: shear, and N on side -, N
+    + more on side +."""
     x, half = COORDINATES[:dimension], sp.Rational(1, 2)
     s, last, y = x[:-1], x[-1], x[1] if dimension == 3 else 0
     h = last - half
@@ -27,7 +29,8 @@ def displacements(dimension, N, shear, tangential, normal, more=0, size=1):
 
 
 def sides(dimension, ratio, slip, uniform=False):
-    """[(displacement, body force) of side -, of side +] for lambda_t = mu N ratio m, u^p = slip m; N and m may be uniform."""
+    """Returns [(displacement, body force) of side -, of side +] for lambda_t = mu N ratio m, u^p = slip m; N and m
+    may be uniform."""
     x, half, varies = COORDINATES[:dimension], sp.Rational(1, 2), 0 if uniform else 1
     y = x[1] if dimension == 3 else 0
     angle = half + (x[0] - y / sp.Integer(2)) * varies
@@ -44,13 +47,15 @@ def sides(dimension, ratio, slip, uniform=False):
 
 
 def beside(dimension, on, leaves, conductivity, side):
-    """What is `on` the fracture's side, and of which so much leaves the rock there."""
+    """Field in the rock with the value `on` at the side of the fracture and the outflow `leaves` from the rock
+    there."""
     h = COORDINATES[dimension - 1] - sp.Rational(1, 2)
     return on * sp.cos(2 * h) + (1 if side == "above" else -1) * leaves / (2 * conductivity) * sp.sin(2 * h)
 
 
 def pressures(dimension, resists, least=sp.Rational(1, 2), most=sp.Rational(-3, 10)):
-    """Of flow_exact.Manufactured: in the fracture, on both sides by name, and what enters the fracture from them."""
+    """Pressures of flow_exact.Manufactured: in the fracture, on both sides by name, and the inflow to the fracture
+    from them."""
     first, y = COORDINATES[0], COORDINATES[1] if dimension == 3 else 0
     f, C = 1 + sp.sin(2 * first + y), 4 + 2 * first
     entering = {"below": least + sp.cos(first + 2 * y), "above": most + sp.sin(3 * first - y)}
@@ -64,7 +69,7 @@ def leaving(p, mobility, x):
 
 
 def flow(dimension, resists):
-    """Texts by name, of what flow_exact.Manufactured states: pressures and sources below and above, and of the fracture."""
+    """Expressions of flow_exact.Manufactured by name: pressures and sources below, above and in the fracture."""
     x = COORDINATES[:dimension]
     f, sides, entering = pressures(dimension, resists)
     found = {"fracture": f, "fracture source": leaving(f, 2 + x[0], x[:-1]) - sum(entering.values())}
@@ -74,13 +79,14 @@ def flow(dimension, resists):
 
 
 def opening(dimension):
-    """The jump of poro_exact.Opened at t = 1, tangential and normal."""
+    """Jump of poro_exact.Opened at t = 1, tangential and normal."""
     first, y = COORDINATES[0], COORDINATES[1] if dimension == 3 else 0
     return [sp.cos(first + y) / 5, sp.sin(first - y) / 5][:dimension - 1], sp.Rational(1, 2) + sp.sin(2 * first + y) / 5
 
 
 def opened(dimension):
-    """Texts by name, of poro_exact.Opened: displacement, body force, pressure and source of both sides; the latter of the fracture."""
+    """Expressions of poro_exact.Opened by name: displacement, body force, pressure and source of both sides;
+    pressure and source of the fracture."""
     x, alpha = COORDINATES[:dimension], ROCK["alpha"]
     f, sides, entering = pressures(dimension, 0)
     tangential, normal = opening(dimension)
@@ -98,9 +104,10 @@ HEAT = {"conductivity": 3, "capacity": 2, "of filling": 1, "in fracture": 2, "ex
 
 
 def warmed(dimension, carried):
-    """Texts by name, of heat_exact.Sliding: as of opened(), and temperatures of both sides and of the fracture, and sources of heat."""
+    """Expressions of heat_exact.Sliding by name: as in opened(), with temperatures of rock and fracture, and heat
+    sources."""
     x, half, y, t = COORDINATES[:dimension], sp.Rational(1, 2), COORDINATES[1] if dimension == 3 else 0, TIME
-    s, c, conducts = x[:-1], carried, 2 * HEAT["in fracture"]  # of one half of the fracture, per area
+    s, c, conducts = x[:-1], carried, 2 * HEAT["in fracture"]  # conductance of half of the fracture, per area
     alpha, beta, stiffness = ROCK["alpha"], HEAT["expansion"], 3 * LAM + 2 * G
     N, slip = t * (3 + sp.sin(2 * x[0] + y)) / 5, t * (4 + sp.cos(2 * x[0] + y)) / 5
     angle = half + x[0] - y / sp.Integer(2)
@@ -110,7 +117,8 @@ def warmed(dimension, carried):
     aperture = 1 + HEAT["dilation"] * slip
     f, sides, entering = pressures(dimension, 0, sp.Rational(3, 2), sp.Integer(-2))
     warm, excess = t * (2 + sp.sin(2 * x[0] - y)), {"below": t * (1 + x[0]) / 2}
-    carries = {"below": conducts + c * t * entering["below"], "above": conducts}  # into the fracture, by excess
+    # heat flux into the fracture per excess
+    carries = {"below": conducts + c * t * entering["below"], "above": conducts}
     leaves = leaving(t * f, aperture**3 / 6, s)
     flow = [-aperture**3 / 6 * t * sp.diff(f, k) for k in s]
     power = (FRICTION - HEAT["dilation"]) * N * sp.diff(slip, t)
@@ -145,7 +153,9 @@ def body_force(u, x, p):
 
 
 def fluid_source(u, x, p):
-    """As a text, of mobility 1: pores grow by alpha div u + growth p, of which the first part counts at the reference density."""
+    """Expression of the fluid source for mobility 1.
+
+    Pores grow by alpha div u + growth p; the first term counts at the reference density."""
     c, growth, slopes = ROCK["compressibility"], ROCK["growth"], [sp.diff(p, k) for k in x]
     strained = ROCK["alpha"] * sum(sp.diff(a, k, TIME) for a, k in zip(u, x))
     stored = (growth + c * (ROCK["porosity"] + growth * p)) * sp.diff(p, TIME)
@@ -154,7 +164,7 @@ def fluid_source(u, x, p):
 
 
 def poro(dimension):
-    """Displacement, body force, pressure and source, as texts, of poro_exact.Manufactured times t."""
+    """Expressions for displacement, body force, pressure and source of poro_exact.Manufactured times t."""
     x = COORDINATES[:dimension]
     waves, humps = [sp.sin(2 * sp.pi * k) for k in x], [k * (1 - k) for k in x]
     p = TIME * humps[0] * sp.prod(waves[1:])
@@ -167,8 +177,9 @@ def text(expression):
 
 
 def expressions(dimension, regime):
-    """(displacement of side -, of side +, body force of side -, of side +), each a list of texts. Where the regime is mixed
-    both have a form for x < 1/2, which sticks, and one for x > 1/2, which slips."""
+    """Returns (displacement of side -, of side +, body force of side -, of side +), each a list of expressions.
+
+    In the mixed regime, expressions have one form for x < 1/2, which sticks, and one for x > 1/2, which slips."""
     x = COORDINATES[0]
     y = COORDINATES[1] if dimension == 3 else 0
     if regime == "stick":

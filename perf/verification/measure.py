@@ -1,4 +1,4 @@
-"""Runs a scene and measures its results against exact functions, from the files that the run wrote."""
+"""Runs a scene and measures its results against exact functions, from the output files of the run."""
 import json
 import math
 import os
@@ -11,10 +11,10 @@ import numpy as np
 import vtkmodules.vtkCommonDataModel as vtk
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-import read  # of apps/plot
+import read  # in apps/plot
 
 ROOT = Path(__file__).resolve().parents[2]
-TIME_LIMIT = 900  # seconds, of one run
+TIME_LIMIT = 900  # seconds per run
 CELLS = {5: vtk.vtkTriangle, 9: vtk.vtkQuad, 10: vtk.vtkTetra, 12: vtk.vtkHexahedron, 22: vtk.vtkQuadraticTriangle,
          28: vtk.vtkBiQuadraticQuad, 24: vtk.vtkQuadraticTetra, 29: vtk.vtkTriQuadraticHexahedron}
 SIMPLICES = {5: 2, 22: 2, 10: 3, 24: 3}
@@ -22,11 +22,11 @@ GAUSS = 5  # points per direction
 
 
 class RunError(Exception):
-    """Why there are no results."""
+    """Error of a run without results; the message contains the reason."""
 
 
 def cube_rule(dimension, points=GAUSS):
-    """Points [q, dimension] and weights [q] of [0, 1]^dimension."""
+    """Gauss points [q, dimension] and weights [q] of [0, 1]^dimension."""
     if dimension == 0:
         return np.zeros((1, 0)), np.ones(1)
     x, w = np.polynomial.legendre.leggauss(points)
@@ -36,7 +36,7 @@ def cube_rule(dimension, points=GAUSS):
 
 
 def simplex_rule(dimension, points=GAUSS):
-    """The rule of the cube, collapsed to x1 + x2 (+ x3) <= 1."""
+    """Points and weights of the simplex x1 + x2 (+ x3) <= 1, from the rule of the cube by collapsed coordinates."""
     x, w = cube_rule(dimension, points)
     placed, left = np.empty_like(x), np.ones(len(x))
     for k in range(dimension):
@@ -49,18 +49,18 @@ def simplex_rule(dimension, points=GAUSS):
 @dataclass
 class Run:
     results: dict
-    rock: object        # grid of VTK
-    faces: object       # read.Surface: points, polygons, cell_data; None: no fractures
+    rock: object        # VTK grid
+    faces: object       # read.Surface: points, polygons, cell_data; None without fractures
     dimension: int
 
     def corners(self):
-        """[face, corner, coordinates], without the nodes of order 2."""
+        """Corners of fracture faces, [face, corner, coordinates], without the nodes of order 2."""
         sizes = {2: 2, 3: 2} if self.dimension == 2 else {3: 3, 6: 3, 4: 4, 9: 4}
         polygons = [cell[:sizes[len(cell)]] for cell in self.faces.polygons]
         return self.faces.points[np.array(polygons)][:, :, :self.dimension]
 
     def on(self, name):
-        """Which faces belong to the fracture; they are numbered in the order of names."""
+        """Mask of the faces of a fracture; the array "fracture" numbers fractures in the order of names."""
         names = sorted(self.results["steps"][-1]["fractures"])
         return self.faces.cell_data["fracture"] == names.index(name)
 
@@ -68,25 +68,26 @@ class Run:
         return self.faces.cell_data[name]
 
     def unknowns(self, prescribed):
-        """Of the linear system: what is not eliminated face by face or cell by cell, without the prescribed displacements."""
+        """Number of unknowns of the linear system, without eliminated blocks and prescribed displacements."""
         eliminated = {block for group in self.results["blocks"].get("local_groups", []) for block in group["blocks"]}
         kept = sum(f["unknowns"] for f in self.results["blocks"]["fields"] if f["name"] not in eliminated)
         if prescribed is None:
             return kept
         points, values = vtk_to_numpy(self.rock.GetPoints().GetData()), self.rock.GetPointData().GetArray("displacement")
-        if self.results["ranks"] > 1:  # a node that pieces share is in each of them; the two sides of a fracture differ
+        if self.results["ranks"] > 1:  # shared nodes occur in every piece; the two sides of a fracture differ
             points = np.unique(np.hstack([points, vtk_to_numpy(values)]), axis=0)
         return kept - prescribed(points[:, :self.dimension])
 
     @property
     def seconds(self):
-        """Assembly and solution: time steps and the solver's set-up, but for the evaluation of loads, here of long expressions."""
+        """Time for assembly and solution: time steps and solver set-up, without the evaluation of loads (here long
+        expressions)."""
         timing = {name: phase["seconds"] for name, phase in self.results["timing"].items()}
         return timing["time_steps"] + timing["set-up_of_the_solver"] - timing["loads"]
 
 
 def start(binary, scene, sets, directory, ranks=1):
-    """Runs xml/SCENE with entries replaced; its last step."""
+    """Runs xml/SCENE with the entries `sets`; returns the last step. Raises RunError if the run fails."""
     shutil.rmtree(directory, ignore_errors=True)
     command = [str(binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
     command += [word for entry in sets for word in ("--set", entry)]
@@ -105,12 +106,12 @@ def start(binary, scene, sets, directory, ranks=1):
 
 
 def relative(error, reference, weights):
-    """|error|/|reference| in L2; values [..., components] at points with weights [...]."""
+    """Returns |error|/|reference| in L2; values [..., components] at points with weights [...]."""
     return float(np.sqrt((weights * (error**2).sum(-1)).sum() / (weights * (reference**2).sum(-1)).sum()))
 
 
 def displacement_error(run, exact):
-    """In L2 over the rock, of what bulk.vtu holds: the displacement without face bubbles and tip functions."""
+    """Relative L2 error of the displacement in bulk.vtu, without face bubbles and tip functions."""
     kind, d = run.rock.GetCellType(0), run.dimension
     cell = CELLS[kind]()
     nodes = vtk_to_numpy(run.rock.GetCells().GetConnectivityArray()).reshape(run.rock.GetNumberOfCells(), -1)
@@ -132,8 +133,8 @@ def displacement_error(run, exact):
 
 
 def tip_rule(dimension, tips, points=GAUSS):
-    """Points and weights on the reference simplex for functions of the root of the distance from some of its corners, which
-    `tips` counts: they are in front."""
+    """Points and weights on the reference simplex for functions of the square root of the distance from its first
+    `tips` corners."""
     corners = np.vstack([np.zeros(dimension), np.eye(dimension)])
     s, w = cube_rule(1, points)
     (a, wa), (b, wb) = simplex_rule(tips - 1, points), simplex_rule(dimension - tips, points)
@@ -145,8 +146,9 @@ def tip_rule(dimension, tips, points=GAUSS):
 
 
 def tips_of(run):
-    """Which nodes of the rock are tips with functions around them (order 1): those of fractures that both sides share and that
-    have no such function of their own."""
+    """Mask of the rock nodes that are tips with enrichment functions around them (order 1).
+
+    These nodes belong to fractures, are shared by both sides and have no enrichment coefficients of their own."""
     points, u, q = (vtk_to_numpy(run.rock.GetPoints().GetData() if name == "points" else run.rock.GetPointData().GetArray(name))
                     for name in ("points", "displacement", "tip displacement"))
     values, last = np.unique(np.hstack([points, u]), axis=0), run.faces.points[np.unique(np.concatenate(run.faces.polygons))]
@@ -156,20 +158,21 @@ def tips_of(run):
 
 
 def gradient(exact, points, step=1e-9):
-    """Central differences of an exact displacement, [point, i, j]."""
+    """Gradient of an exact displacement by central differences, [point, i, j]."""
     d = points.shape[1]
     return np.stack([(exact.displacement(points + step * e)[:, :d] - exact.displacement(points - step * e)[:, :d]) / (2 * step)
                      for e in np.eye(d)], axis=2)
 
 
 def energy(error, exact):
-    """Of the stress that belongs to gradients of a displacement [..., i, j], per volume, twice."""
+    """Twice the strain energy density of a displacement gradient [..., i, j]."""
     strain = (error + np.swapaxes(error, -1, -2)) / 2
     return 2 * exact.G * (strain**2).sum((-1, -2)) + exact.lam * np.trace(strain, axis1=-2, axis2=-1)**2
 
 
 def stress_error(run, exact):
-    """Square of the error of the stress in the energy, [cell], by quadrature of what bulk.vtu holds, tip functions included."""
+    """Squared energy norm of the stress error, [cell], by quadrature of the displacement in bulk.vtu with tip
+    functions."""
     kind, d = run.rock.GetCellType(0), run.dimension
     cell, n = CELLS[kind](), run.rock.GetCell(0).GetNumberOfPoints()
     nodes = vtk_to_numpy(run.rock.GetCells().GetConnectivityArray()).reshape(-1, n)
@@ -177,7 +180,7 @@ def stress_error(run, exact):
     tip = np.zeros(nodes.shape, dtype=bool)
     if run.rock.GetPointData().HasArray("tip displacement"):
         q, tip = vtk_to_numpy(run.rock.GetPointData().GetArray("tip displacement"))[:, :d], tips_of(run)[nodes]
-        order = np.argsort(~tip, axis=1, kind="stable")  # tips first: simplices may be turned as one likes
+        order = np.argsort(~tip, axis=1, kind="stable")  # tips first: the order of corners in a simplex is arbitrary
         nodes, tip = np.take_along_axis(nodes, order, 1), np.take_along_axis(tip, order, 1)
     square = np.zeros(len(nodes))
     for tips in np.unique(tip.sum(axis=1)):
@@ -201,7 +204,7 @@ def stress_error(run, exact):
 
 
 def effectivity(run, means, exact):
-    """What the run says of its error over the error: of jumps, and of stress where it is known."""
+    """Estimated error divided by the true error: of jumps, and of stress if its exact value is known."""
     estimate, size = run.results["steps"][-1]["error_estimate"], area(run.corners())
     error = float(np.sqrt((size * ((run.data("jump")[:, :run.dimension] - means)**2).sum(axis=1)).sum()))
     found = {"jump": estimate["jump"].get("norm", math.nan) / error}
@@ -211,7 +214,9 @@ def effectivity(run, means, exact):
 
 
 def face_points(corners, points=GAUSS):
-    """Quadrature points [face, q, d] and weights [face, q], which sum to the area, of segments, triangles and quadrilaterals."""
+    """Quadrature points [face, q, d] and weights [face, q] of segments, triangles and parallelograms.
+
+    The weights of a face sum to its area."""
     n, d = corners.shape[1:]
     x, w = simplex_rule(2, points) if n == 3 else cube_rule(n // 2, points)
     if n == 4:
@@ -238,13 +243,14 @@ def face_means(function, corners, points=GAUSS):
 
 
 def jump_error(run, means):
-    """Of the face-mean jump, in L2 over all faces: `means` [face, d], exact, in global components."""
+    """Relative L2 error of the face-mean jump; `means` [face, d] are exact, in global components."""
     return relative(run.data("jump")[:, :run.dimension] - means, means, area(run.corners()))
 
 
 def traction_errors(run, exact, tangents, points=8):
-    """(in L2, at the centres of faces), normal and tangential components; `tangents` [d - 1, d] are the directions in which
-    exact.traction counts the latter."""
+    """Relative errors (in L2, at face centres) of the traction, with normal and tangential components.
+
+    `tangents` [d - 1, d] are the directions of the tangential components of exact.traction."""
     corners = run.corners()
     local, world = run.data("traction local"), run.data("traction")[:, :run.dimension]
     computed = np.column_stack([local[:, 0], world @ np.transpose(tangents)])

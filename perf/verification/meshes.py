@@ -1,4 +1,4 @@
-"""Meshes of gmsh, made by its program from scripts that this module writes. The same script gives the same mesh."""
+"""Meshes by the gmsh program, from scripts that this module writes. The same script gives the same mesh."""
 import math
 import shutil
 import subprocess
@@ -13,11 +13,12 @@ BOX = (-2, -2, 2, 2)
 
 
 class NoGmsh(Exception):
-    """Why there is no mesh."""
+    """Error of a missing mesh; the message contains the reason."""
 
 
 def with_gmsh(script, file, dimension):
-    """Writes the script beside the mesh and makes the mesh, unless it is there already."""
+    """Writes the script next to the mesh and creates the mesh, unless a mesh of the same script exists. Raises
+    NoGmsh."""
     if shutil.which("gmsh") is None:
         raise NoGmsh("gmsh is not installed")
     geo = file.with_suffix(".geo")
@@ -34,14 +35,15 @@ def with_gmsh(script, file, dimension):
 
 
 def turned(x, y, degrees):
-    """A point turned counter-clockwise about the origin, as gmsh reads it."""
+    """Returns a point rotated counter-clockwise about the origin, in gmsh syntax."""
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     return f"{{{c * x - s * y:.17g}, {s * x + c * y:.17g}, 0}}"
 
 
 def plane(file, fractures, size, box=BOX, largest=None, angle=0, options=""):
-    """Triangles of a box with fractures {name: (points of a line of segments)}, turned by an angle in degrees. `size` is
-    the length of edges as a formula of gmsh in x and y. The points of all fractures that are equal are one point."""
+    """Triangular mesh of a box with fractures {name: points of a polyline}, rotated by an angle in degrees.
+
+    `size` is the edge length as a gmsh formula in x and y. Equal points of fractures become one point."""
     x0, y0, x1, y1 = box
     corners, lines, names, points = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)], [], {}, {}
     for k, corner in enumerate(corners):
@@ -64,12 +66,12 @@ def plane(file, fractures, size, box=BOX, largest=None, angle=0, options=""):
 
 
 def uniform_size(h):
-    """Mesh U: h (0.6 + max(0, r - 1.2)), r from the centre of the crack."""
+    """Edge length of mesh U: h (0.6 + max(0, r - 1.2)), with the distance r from the crack centre."""
     return f"{h:g}*(0.6+Max(0,Sqrt(x^2+y^2)-1.2))"
 
 
 def graded_size(h, smallest, tips):
-    """smallest + h r, r from the nearest of the tips."""
+    """Edge length smallest + h r, with the distance r from the nearest tip."""
     formula = ""
     for x, y in tips:
         distance = f"Sqrt((x-({x:.17g}))^2+(y-({y:.17g}))^2)"
@@ -85,23 +87,25 @@ def uniform_crack(folder, h, angle=0):
 
 
 def graded_crack(folder, h, ratio):
-    """Edges of h/1 at distance 1 from a tip, and `ratio` times h at it."""
+    """Mesh with edges of length `ratio` times h at the tips that grow by h per unit distance, at most h."""
     tips = CRACK["crack"]
     return plane(folder / f"graded_{h:g}_{ratio:g}.msh", CRACK, graded_size(h, h * ratio, tips), largest=h)
 
 
 def t_junction(folder, h, ratio, half_width):
-    """A horizontal fracture on which a vertical one ends; edges grow by h per length away from tips and junction, where
-    they are 50 m times h times ratio."""
+    """Mesh of a horizontal fracture with a vertical one that ends on it.
+
+    Edges have the length 50 m times h times `ratio` at tips and junction, and grow by h per length."""
     fractures = {"horizontal": ((-25, 50), (0, 50), (25, 50)), "vertical": ((0, -50), (0, 50))}
     size = graded_size(h, 50 * h * ratio, [(-25, 50), (25, 50), (0, 50), (0, -50)])
     box = (-half_width, -half_width, half_width, half_width)
     return plane(folder / f"t_{h:g}_{ratio:g}_{half_width:g}.msh", fractures, size, box,
-                 options="Mesh.RandomFactor = 1e-11;")  # of the size of the box: small against the smallest edge
+                 # relative to the box size: small compared with the smallest edge
+                 options="Mesh.RandomFactor = 1e-11;")
 
 
 def wavy(folder, h):
-    """Half a period, 2 periods high on each side; edges of h on the fracture."""
+    """Mesh of half a period with a height of 2 periods on each side; edges of length h on the fracture."""
     script = plane_strip(h)
     return with_gmsh(script, folder / f"wavy_{h:g}.msh", 2)
 
@@ -118,7 +122,8 @@ def plane_strip(h, width=0.5, height=2):
 
 
 def penny(folder, h, smallest, growth):
-    """Tetrahedra of a box around a disc of radius 1: edges of `smallest` at its front, growing by `growth` per length to h."""
+    """Tetrahedral mesh of a box around a disc of radius 1. Edges grow from `smallest` at the front by `growth` per
+    length to h."""
     return around_disc(folder / f"penny_{h:g}_{smallest:g}_{growth:g}.msh", h, smallest, growth, "Disk(7) = {0, 0, 0, 1};")
 
 
@@ -140,7 +145,7 @@ Mesh.MeshSizeMax = {h:g};
 
 
 def polygon(folder, h, smallest, growth, sides=12):
-    """The same around a regular polygon with corners at 1 from its centre."""
+    """Mesh as penny(), around a regular polygon with corners at distance 1 from its centre."""
     corners = [(math.cos(2 * math.pi * k / sides), math.sin(2 * math.pi * k / sides)) for k in range(sides)]
     points = "".join(f"Point({100 + k}) = {{{x:.17g}, {y:.17g}, 0}};\n" for k, (x, y) in enumerate(corners))
     lines = "".join(f"Line({100 + k}) = {{{100 + k}, {100 + (k + 1) % sides}}};\n" for k in range(sides))
@@ -148,13 +153,13 @@ def polygon(folder, h, smallest, growth, sides=12):
                        f"{points}{lines}Curve Loop(100) = {{100 : {99 + sides}}};\nPlane Surface(7) = {{100}};")
 
 
-# Of flow
+# Flow
 
 NETWORK = {"west-east": ((0, 0.2), (1, 0.7)), "north-south": ((0.15, 1), (0.8, 0)), "falling": ((0, 0.9), (1, 0.35))}
 
 
 def crossing(first, second):
-    """Where two lines meet, or None."""
+    """Returns the intersection of two lines, or None."""
     (a, b), (c, d) = first, second
     u, v, w = ([q[i] - p[i] for i in (0, 1)] for p, q in ((a, b), (c, d), (a, c)))
     area = u[0] * v[1] - u[1] * v[0]
@@ -163,7 +168,7 @@ def crossing(first, second):
 
 
 def crossed(lines):
-    """The lines with the points where they meet others, in their order."""
+    """Returns the lines with their intersection points in order."""
     places = {}
     for name, (a, b) in lines.items():
         meets = {other: crossing(*(lines[k] for k in sorted((name, other)))) for other in lines if other != name}
@@ -172,12 +177,13 @@ def crossed(lines):
 
 
 def network(folder, h):
-    """Straight fractures that cross each other and end on the sides of the unit square."""
+    """Mesh of straight fractures that cross and end on the sides of the unit square."""
     return plane(folder / f"network_{h:g}.msh", crossed(NETWORK), f"{h:g}", (0, 0, 1, 1))
 
 
 def hydrocoin(folder, h):
-    """Two faults that cross, from the hilly top to the bottom; edges of h, of h/4 at the ends and the crossing of faults."""
+    """Mesh with two crossing faults from the hilly top to the bottom; edges of h, and h/4 at fault ends and at the
+    crossing."""
     faults = crossed({"falling": ((400, 100), (1500, -1000)), "steep": ((1200, 100), (1000, -1000))})
     top = [(0, 150), (400, 100), (800, 150), (1200, 100), (1600, 150)]
     around = [*top, (1600, -1000), (1500, -1000), (1000, -1000), (0, -1000)]
@@ -198,8 +204,10 @@ def hydrocoin(folder, h):
 
 
 def single(folder, h):
-    """Tetrahedra of a cube of 100 m with a tilted plane through it, a layer 10 m thick at the bottom, an inlet 10 m high at the top
-    of the face x = 0, and the layer's face in y = 0 as outlet. Edges of h, of h/5 where inlet and outlet end."""
+    """Tetrahedral mesh of a 100 m cube with a tilted plane fracture and a 10 m thick layer at the bottom.
+
+    The inlet is the upper 10 m of the face x = 0, the outlet the layer's face in y = 0. Edges have the length
+    h, and h/5 at the edges of inlet and outlet."""
     ends = "Min(Sqrt(x^2+(z-90)^2),Sqrt(y^2+(z-10)^2))"
     script = f"""SetFactory("OpenCASCADE");
 Box(1) = {{0, 0, 0, 100, 100, 100}};
@@ -231,7 +239,7 @@ Mesh.Optimize = 1;
 # Without fractures
 
 def square(folder, h):
-    """Triangles of the unit square with edges of h."""
+    """Triangular mesh of the unit square with edges of length h."""
     script = f"""SetFactory("OpenCASCADE");
 Rectangle(1) = {{0, 0, 0, 1, 1}};
 Physical Curve("boundary") = {{1 : 4}};

@@ -1,4 +1,4 @@
-"""The cases of poroelasticity: scenes, meshes, what is measured on them, and the bounds."""
+"""Cases of poroelasticity: scenes, meshes, measured errors and bounds."""
 import csv
 
 import numpy as np
@@ -34,7 +34,8 @@ def mean_pressures(run, function):
 
 
 def pressures(run, exact_at, axis):
-    """The same, against pressures that depend on one coordinate, of which points share many."""
+    """Relative L2 error of mean pressures, for exact pressures that depend on one coordinate; equal coordinates
+    are evaluated once."""
     def at(x):
         places, which = np.unique(x[:, axis].round(12), return_inverse=True)
         return exact_at(places)[which]
@@ -42,7 +43,8 @@ def pressures(run, exact_at, axis):
 
 
 def terzaghi():
-    """Steps are as the square of the size of cells, for implicit Euler."""
+    """Case with a number of steps proportional to the square of the number of cells along the column (implicit
+    Euler)."""
     known, t = poro_exact.COLUMN, 0.1 / poro_exact.COLUMN.rock.c
 
     def errors(run, _):
@@ -58,8 +60,10 @@ def terzaghi():
 
 
 def undrained():
-    """The pressure of a column that is loaded quickly rises to its undrained value and no higher, of one kind of rock and of layers;
-    one that drains a little follows the exact profile."""
+    """Case of rapid loading of a homogeneous and a layered column: the pressure must reach, but not exceed, its
+    undrained value.
+
+    Slightly drained homogeneous columns must follow the exact profile."""
     known = poro_exact.COLUMN
 
     def errors(run, exact):
@@ -78,7 +82,7 @@ def undrained():
 
 
 def mandel():
-    """The error at 50 s, of steps of 5 s and less, and the rise of the pressure in the middle after the load (Mandel and Cryer)."""
+    """Case of pressure errors at 50 s with steps of 5 s, at 48 s with decreasing steps, and at 5000 s."""
     known = poro_exact.PLATE
 
     def errors(run, _):
@@ -108,17 +112,18 @@ def mandel():
 
 EVERY = ("pressure", "flow", "u", "force")
 IRREGULAR = {"triangle gmsh": 1.5, "tetrahedron": 1.25}  # orders of flows, where errors of neighbours do not cancel
-WORSE = {"force": ("triangle gmsh 2",), "flow": ("hexahedron 2",)}  # than the peer, README.md says why
+# errors above those of the peer; README.md explains the reason
+WORSE = {"force": ("triangle gmsh 2",), "flow": ("hexahedron 2",)}
 
 
 def peer():
-    """{(series, mesh): row} of errors of the peer on meshes of as many cells."""
+    """Errors of the peer on meshes with the same number of cells, {(series, mesh): row}."""
     with open(REFERENCES / "poro_peer.csv") as file:
         return {(row["series"], row["mesh"]): row for row in csv.DictReader(file)}
 
 
 def comparison(series):
-    """Bounds and points of the peer, on meshes of as many cells; its cells are linear."""
+    """Bounds and points from the peer, on meshes with the same number of cells; the peer has linear cells."""
     rows, shapes = peer(), {one.name[:-2] for one in series}
     bounds = [Bound(f"{shape} 2", mesh, name, float(row[name])) for (shape, mesh), row in rows.items() if shape in shapes
               for name in EVERY if f"{shape} 2" not in WORSE.get(name, ())]
@@ -130,7 +135,7 @@ def comparison(series):
 
 
 def manufactured(d, series, least, headline):
-    """`least`: orders of u and force by series; those of pressures are 2."""
+    """Case; `least` = {series: orders of u and force}. The order of pressures is 2."""
     bounds, points = comparison(series)
     bounds += [Order(one.name, "pressure", 2) for one in series]
     bounds += [Order(one.name, name, IRREGULAR.get(one.name[:-2], 2)) for one in series for name in ("flow", "through")]
@@ -140,14 +145,14 @@ def manufactured(d, series, least, headline):
 
 
 def made(d, shape, order, counts, quick=0):
-    """A series on boxes with so many cells along each edge."""
+    """Series on boxes with these numbers of cells along each edge."""
     grids = [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}",)) for n in counts]
     sets = (f"Mesh.cell={shape}", f"Mesh.order={order}")
     return Series(f"{shape} {order}", grids, f"verification/manufactured_poro_{d}d.xml", sets, poro_exact.Manufactured(d), quick)
 
 
 def mms_poro2d():
-    """Of cells of order 2, u has order 3 until the error of the pressure, of order 2, is larger."""
+    """Case in 2D. With cells of order 2, u has order 3 until the error of the pressure, of order 2, dominates."""
     series = [made(2, shape, order, counts, 2 * (shape[0] == "q" or order == 2))
               for shape, counts in (("quadrilateral", (4, 8, 16, 32, 64)), ("triangle", (8, 16, 32))) for order in (1, 2)]
     makers = [(f"h={h:g}", lambda folder, h=h: meshes.square(folder, h)) for h in (1 / 4, 1 / 8, 1 / 16, 1 / 32)]
@@ -166,13 +171,14 @@ def mms_poro3d():
     return manufactured(3, series, least, ("hexahedron 2", "n=12"))
 
 
-# Steps
+# Time steps
 
-SCHEMES = {"Euler": (1, ()), "BDF2": (2, ("Time.scheme=BDF2",))}  # order and entries of the scene
+SCHEMES = {"Euler": (1, ()), "BDF2": (2, ("Time.scheme=BDF2",))}  # order; entries of the scene
 
 
 def time_errors(run, known):
-    """Of a fracture `pressure` is the worst one, in it or in the rock, and `u` its opening."""
+    """Errors. With a fracture, `pressure` is the largest error in fracture and rock, and `u` the error of the
+    opening."""
     if run.faces is None:
         return {"pressure": mean_pressures(run, known.pressure), "u": measure.displacement_error(run, known)}
     p = np.concatenate([flow_measure.array(run, "pressure"), run.data("fracture pressure")])
@@ -180,7 +186,7 @@ def time_errors(run, known):
 
 
 def poro_time():
-    """Solutions that cells represent exactly: the errors are those of steps."""
+    """Case of solutions that the cells represent exactly, with errors of the time steps only."""
     steps = [(f"{n} steps", (f"Time.steps={n}",)) for n in (10, 20, 40, 80, 160)]
     series, bounds = [], []
     for scheme, (order, entries) in SCHEMES.items():

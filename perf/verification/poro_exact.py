@@ -1,6 +1,7 @@
-"""Exact solutions of poroelasticity: consolidation, undrained states, fractures that a fluid opens, manufactured ones.
+"""Exact solutions of poroelasticity: consolidation, undrained states, fractures opened by fluid, manufactured
+solutions.
 
-SI units; the rock's constants are Lame's, alpha is Biot's coefficient, S the storage at constant strain."""
+SI units; lam and G are Lame's constants, alpha is the Biot coefficient, S the storage at constant strain."""
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,12 +21,12 @@ class Rock:
 
     @property
     def M(self):
-        """Of uniaxial strain."""
+        """Oedometric modulus (uniaxial strain)."""
         return self.lam + 2 * self.G
 
     @property
     def c(self):
-        """Diffusivity of the pressure."""
+        """Pressure diffusivity."""
         return self.mobility / (self.S + self.alpha**2 / self.M)
 
     @property
@@ -45,7 +46,7 @@ class Rock:
 
 @dataclass
 class Terzaghi:
-    """Column of height H, drained and loaded by sigma at its top from time zero on (Terzaghi 1923)."""
+    """Column of height H with a drained top, loaded there by sigma from time zero on (Terzaghi 1923)."""
     rock: Rock
     H: float
     sigma: float
@@ -60,7 +61,7 @@ class Terzaghi:
         return self.undrained * (waves * np.exp(-k**2 * self.rock.c * t / self.H**2)).sum(axis=1)
 
     def settlement(self, t):
-        """Of the top."""
+        """Settlement of the top."""
         k = (2 * np.arange(2000) + 1) * np.pi / 2
         mean = self.undrained * (2 / k**2 * np.exp(-k**2 * self.rock.c * t / self.H**2)).sum()
         return (self.sigma - self.rock.alpha * mean) * self.H / self.rock.M
@@ -68,8 +69,10 @@ class Terzaghi:
 
 @dataclass
 class Mandel:
-    """The quarter 0 < x < a, 0 < y < b of a plate between two rigid ones without friction, which a force of 2 F per length presses
-    together from time zero on; drained at x = a (Mandel 1953; displacements of Cheng and Detournay 1988)."""
+    """Quarter 0 < x < a, 0 < y < b of a plate between two rigid, frictionless plates, drained at x = a.
+
+    A force of 2 F per length compresses it from time zero on. Mandel (1953); displacements of Cheng and
+    Detournay (1988)."""
     rock: Rock
     a: float
     b: float
@@ -77,7 +80,7 @@ class Mandel:
 
     @cached_property
     def roots(self):
-        """Of tan x = x (1 - nu)/(nu_u - nu), one in each interval (n pi, n pi + pi/2), by bisection."""
+        """Roots of tan x = x (1 - nu)/(nu_u - nu), one in each interval (n pi, n pi + pi/2), by bisection."""
         ratio = (1 - self.rock.nu) / (self.rock.undrained_nu - self.rock.nu)
         n = np.arange(400)
         low, high = n * np.pi + np.where(n == 0, 1e-6, 0), n * np.pi + np.pi / 2
@@ -107,17 +110,20 @@ class Mandel:
 
 
     def way(self, times):
-        """Times and displacements of the plate, from rest on."""
+        """Times and displacements of the plate, beginning with 0."""
         return [0.0, *times], [0.0, *(self.approach(t) for t in times)]
 
 
 @dataclass
 class Joined:
-    """A block of height 1 with a fracture through it, fixed at its bottom and displaced by `way` (along the fracture, along the normal) at
-    its top, in which the fluid has the pressure p: N + share p = N0 + k_n ([[u]]_n - d_n), shear traction = T0 + k_s (d_t - [[u]]_t).
-    `share` is 1 where the rock keeps its fluid, or Biot's coefficient is 0, and 1 - Biot's coefficient where the pressure in the rock is
-    that of the fracture. Joint as in docs/model/model.md, (11)-(14); the jump has what T0 stretches the joint by."""
-    lam: float  # undrained where the rock keeps its fluid
+    """Block of height 1 with a through-going fracture at fluid pressure p, fixed at its bottom and displaced by
+    `way` at its top.
+
+    `way` = (tangential, normal). The equations are N + share p = N0 + k_n ([[u]]_n - d_n) and shear traction =
+    T0 + k_s (d_t - [[u]]_t). `share` is 1 for undrained rock or a Biot coefficient of 0, and 1 - alpha if the
+    rock has the fracture's pressure. Joint as in docs/model/model.md, (11)-(14); the jump includes the elastic
+    shear displacement due to T0."""
+    lam: float  # undrained value for undrained rock
     G: float
     way: tuple
     friction: float
@@ -136,7 +142,7 @@ class Joined:
 
     @property
     def K_s(self):
-        """Of rock and fracture."""
+        """Shear stiffness of rock and fracture in series."""
         return 1 / (1 / self.G + 1 / self.shear_stiffness)
 
     def closed_by(self, N):
@@ -146,11 +152,11 @@ class Joined:
         return (self.N0 - self.share * p) / self.k_n + self.gap + self.dilation * slip - self.way[1]
 
     def sheared(self, T):
-        """Tangential jump under the traction T."""
+        """Tangential jump under the shear traction T."""
         return self.way[0] + (self.T0 - T) / self.G + self.T0 / self.shear_stiffness
 
     def compression(self, softness, load):
-        """N of softness N + closed_by(N) = load > 0."""
+        """Solves softness N + closed_by(N) = load > 0 for N."""
         K = self.closure * self.normal_stiffness
         b = softness * K + self.closure - load
         root = np.sqrt(b * b + 4 * softness * load * K)
@@ -158,19 +164,19 @@ class Joined:
 
     @property
     def held(self):
-        """The shear traction of a fracture that sticks, and the slip of one without traction."""
+        """Shear traction of the sticking fracture, and slip of the fracture without shear traction."""
         T = self.T0 + self.K_s * self.way[0]
         return T, T / self.K_s
 
     @property
     def onset(self):
-        """Pressures at which it begins to slide, and to open."""
+        """Pressures at the onset of sliding and of opening."""
         T, slip = self.held
         N = T / self.friction
         return (self.k_n * (self.load(0, 0) - self.closed_by(N)) - N) / self.share, self.k_n * self.load(0, slip) / self.share
 
     def state(self, p):
-        """"stick", "slip" or "open", N, shear traction, normal and tangential jump."""
+        """Returns (state, N, shear traction, normal jump, tangential jump) with the state "stick", "slip" or "open"."""
         T, free = self.held
         if self.load(p, free) <= 0:
             return "open", 0.0, 0.0, self.way[1] - (self.N0 - self.share * p) / self.k_n, self.sheared(0)
@@ -182,7 +188,7 @@ class Joined:
         return "slip", N, T, self.gap + self.dilation * slip - self.closed_by(N), self.sheared(T)
 
     def path(self, near=1e-6):
-        """Pressures, first at the start, around both onsets and between them."""
+        """Pressures of the steps: zero, below the onset of sliding, around both onsets, between them, and above."""
         slides, opens = self.onset
         around = [onset * factor for onset in (slides, opens) for factor in (1 - near, 1 + near)]
         between = [slides + (opens - slides) * part for part in (0.1, 0.5, 0.9)]
@@ -190,8 +196,10 @@ class Joined:
 
 
 class Manufactured:
-    """Unit square or cube, fixed and drained on its sides, at t = 1; everything is proportional to t: in 2D p = x (1 - x) sin 2 pi y,
-    u = (p, sin 2 pi x sin 2 pi y) (Nordbotten 2016), in 3D likewise. Both Lame's constants and the mobility are 1."""
+    """Manufactured solution at t = 1, proportional to t, in the unit square or cube with fixed and drained sides.
+
+    2D: p = x (1 - x) sin 2 pi y, u = (p, sin 2 pi x sin 2 pi y) (Nordbotten 2016); 3D in analogy. Lame's
+    constants and the mobility are 1."""
     lam = G = mobility = 1.0
     alpha = 0.5
 
@@ -199,12 +207,12 @@ class Manufactured:
         self.dimension = dimension
 
     def fields(self, points):
-        """Pressure and displacement, each with derivatives: values [point, 1 + d, 1 + d]; [:, 0] are those of the pressure."""
+        """Pressure and displacement with derivatives, [point, 1 + d, 1 + d]; [:, 0] belongs to the pressure."""
         x = points[:, :self.dimension]
         waves = np.stack([np.sin(2 * np.pi * x), 2 * np.pi * np.cos(2 * np.pi * x)])  # [derivative, point, k]
         humps = np.stack([x * (1 - x), 1 - 2 * x])
         found = []
-        for hump in [0, 0, *range(1, self.dimension - 1), None]:  # the coordinate whose factor is x (1 - x)
+        for hump in [0, 0, *range(1, self.dimension - 1), None]:  # coordinate with the factor x (1 - x)
             factors = [(humps if k == hump else waves)[:, :, k] for k in range(self.dimension)]
             slopes = [[factors[k][int(k == j)] for k in range(self.dimension)] for j in range(-1, self.dimension)]
             found.append(np.stack([np.prod(each, axis=0) for each in slopes], axis=1))
@@ -220,7 +228,7 @@ class Manufactured:
         return self.fields(points)[:, 1:, 0]
 
     def stress(self, points):
-        """Total, [point, i, j]."""
+        """Total stress, [point, i, j]."""
         fields, identity = self.fields(points), np.eye(self.dimension)
         slopes = fields[:, 1:, 1:]
         mean = self.lam * np.trace(slopes, axis1=1, axis2=2) - self.alpha * fields[:, 0, 0]
@@ -228,9 +236,11 @@ class Manufactured:
 
 
 class Opened(flow_exact.Manufactured, exact.Manufactured):
-    """At t = 1; everything is proportional to t. The pressures of flow_exact.Manufactured without resistance, and the displacements of
-    exact.Manufactured for a fracture that is open: in it the fluid pushes, sigma n = -f n. Its aperture is 1 plus the normal jump, and its
-    transmissivity follows the cubic law."""
+    """Manufactured solution at t = 1, proportional to t, of a fracture opened by fluid.
+
+    Pressures are those of flow_exact.Manufactured without resistance, displacements those of exact.Manufactured
+    for an open fracture, where the fluid pressure acts: sigma n = -f n. The aperture is 1 plus the normal jump;
+    the transmissivity follows the cubic law."""
     alpha = 0.5
 
     def __init__(self, dimension):
@@ -248,8 +258,9 @@ class Opened(flow_exact.Manufactured, exact.Manufactured):
 
 
 class InTime:
-    """At t = 1/2, of rock of Lame's constants 1 on a square of edge 1: p = sin 3t (1 + x - y/2), u = sin 2t (x, y/2), which rectangular
-    cells represent exactly."""
+    """Solution at t = 1/2 of rock with Lame's constants 1 on the unit square.
+
+    p = sin 3t (1 + x - y/2), u = sin 2t (x, y/2), which rectangular cells represent exactly."""
 
     def pressure(self, points):
         return np.sin(1.5) * (1 + points[:, 0] - points[:, 1] / 2)
@@ -259,13 +270,14 @@ class InTime:
 
 
 class OpenInTime:
-    """At t = 1/2, of a closed cube of such rock with an open fracture across z: the pressure sin 3t and the opening (1 - cos 2t)/10,
-    everywhere the same."""
+    """Uniform solution at t = 1/2 of a closed cube of the same rock with an open fracture normal to z.
+
+    The pressure is sin 3t, the opening (1 - cos 2t)/10."""
     pressure, opening = np.sin(1.5), (1 - np.cos(1)) / 10
 
 
 def mandel_times(step, end=50.0):
-    """Of steps; the first is over before anything drains."""
+    """End times of steps; the first step is so short that no drainage occurs."""
     return [1e-6, *(step * k for k in range(1, round(end / step) + 1))]
 
 
@@ -273,7 +285,7 @@ FILLED = 1e-3  # pressure of a crack of radius 1, shear modulus 1, at t = 1
 
 
 def filling(d, nu):
-    """What has to flow into it per time, 3D into a disc (Sneddon 1946)."""
+    """Injection rate: crack volume per unit of time. In 3D the crack is a disc (Sneddon 1946)."""
     return float(FILLED * (1 - nu) * (np.pi if d == 2 else 8 / 3))
 
 

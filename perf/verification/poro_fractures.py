@@ -1,4 +1,4 @@
-"""The cases of fractures that fluid opens: scenes, meshes, what is measured on them, and the bounds."""
+"""Cases of fractures opened by fluid: scenes, meshes, measured errors and bounds."""
 from dataclasses import replace
 
 import numpy as np
@@ -19,11 +19,11 @@ def rock(entries):
 
 
 def undrained(lam):
-    """Rock whose fluid is shut in, and makes Lame's first parameter lam."""
+    """Entries of undrained rock with the undrained first Lame parameter lam."""
     return rock({"Biot coefficient": 1, "Lame's first parameter": repr(0.4 * lam), "compressibility of pores": repr(1 / (0.6 * lam))})
 
 
-# A manufactured solution
+# Manufactured solution
 
 def opened_errors(run, known):
     points, weights = face_points(run.corners())
@@ -35,13 +35,13 @@ def opened_errors(run, known):
 
 
 def opened(d, counts):
-    """`counts` by order of cells."""
+    """Case; `counts` = {order of cells: numbers of cells along each edge}."""
     series = []
     for cell, (order, ns) in ((cell, of) for cell in SHAPES[d] for of in counts.items()):
         grids = [(f"n={n}", (f"Mesh.cells={numbers([n] * d)}",)) for n in ns]
         sets, quick = (f"Mesh.cell={cell}", f"Mesh.order={order}"), (cell, order) in (("triangle", 1), ("hexahedron", 1))
         series.append(Series(f"{cell} {order}", grids, f"verification/manufactured_opening_{d}d.xml", sets, poro_exact.Opened(d), 2 * quick))
-    fine = 2 if d == 2 else 1.9  # what is seen on meshes this fine
+    fine = 2 if d == 2 else 1.9  # observed on meshes of this size
     least = {"pressure": 2, "u": 2, "in fracture": fine, "flow": 1, "jump": fine}
     bounds = [Order(one.name, *bound) for one in series for bound in least.items()]
     return Case(f"mms_opening{d}d", f"manufactured solution of a fracture that a fluid opens in {d}D", "", series, opened_errors, None,
@@ -56,13 +56,14 @@ def mms_opening3d():
     return opened(3, {1: (4, 8, 12), 2: (4, 8)})
 
 
-# A fracture that a fluid makes slide and open
+# Fracture that slides and opens by fluid pressure
 
 QUICK = (("dry", "triangle"), ("undrained", "quadrilateral"), ("drained", "tetrahedron"))
 
 
 def mean_state(step):
-    """"stick", "slip", "open" or "mixed", normal and shear traction, normal and tangential jump of the fracture."""
+    """Returns ("stick", "slip", "open" or "mixed", normal and shear traction, normal and tangential jump) of the
+    fracture."""
     of = step["fractures"]["fracture"]
     name = next((name for name in ("stick", "slip", "open") if of[f"fraction_{name}"] > 1 - 1e-9), "mixed")
     (N, *T), (opening, *sliding) = (of[f"mean_{what}"]["local"] for what in ("traction", "jump"))
@@ -70,13 +71,15 @@ def mean_state(step):
 
 
 def onset_error(path, states, before, after, known):
-    """How far from the exact pressure the one may be at which `before` becomes `after`; 1 if it never does so."""
+    """Largest relative distance from the exact pressure at which state `before` changes to `after`; 1 without this
+    change."""
     low, high = ([p for p, state in zip(path, states) if state == name] for name in (before, after))
     return max(abs(p / known - 1) for p in (max(low), min(high))) if low and high and max(low) < min(high) else 1.0
 
 
 def joined_errors(run, known):
-    """Tractions and jumps: the worst of all steps, over the largest."""
+    """Errors of the onset pressures, and of tractions and jumps: the largest of all steps, relative to the largest
+    value."""
     path = known.path()[1:]
     found, states = [mean_state(step) for step in run.results["steps"]], [known.state(p) for p in path]
     names = [one[0] for one in found]
@@ -87,7 +90,8 @@ def joined_errors(run, known):
 
 
 def joined(name, known, title):
-    """The rock is `dry`, without Biot's coupling; keeps its fluid (`undrained`); or has the pressure of the fracture (`drained`)."""
+    """Case with three kinds of rock: `dry` (no Biot coupling), `undrained`, and `drained` (pressure of the
+    fracture)."""
     drained = rock({"Biot coefficient": 0.5, "permeability": "{1.0}"})
     kinds = {"dry": (known, ()), "drained": (replace(known, share=0.5), drained), "undrained": (known, undrained(known.lam))}
     series = []
@@ -110,10 +114,10 @@ def fluid_onset():
     return joined("onset", poro_exact.STRESSED, "a fracture under stress that slides and opens by fluid")
 
 
-# A crack that a given volume of fluid fills
+# Crack filled with a given volume of fluid
 
 def volume_errors(run, known):
-    """The pressure in the crack is the same everywhere once nothing flows any more."""
+    """Errors of pressure, jump and volume. After the injection, the pressure in the crack is uniform."""
     means = cases.crack_jumps(run, known) if run.dimension == 2 else measure.face_means(known.jump, run.corners(), 12)
     size, p = measure.area(run.corners()), run.data("fracture pressure")[:, None]
     volume = (size * run.data("opening")).sum() / poro_exact.filling(run.dimension, 0.25)
@@ -135,7 +139,7 @@ def volume_series():
 
 
 def crack_volume():
-    """Nothing but the opening takes up fluid. Undrained rock has the stiffness that dry rock has without its fluid."""
+    """Case of a crack whose opening is the only storage. Undrained rock has the same stiffness as the dry rock."""
     series = volume_series()
     finest = series[2].meshes[-1][0]
     bounds = [Order(one.name, "pressure", 1) for one in series if one.name[-1] == "1"]

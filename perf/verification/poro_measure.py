@@ -1,6 +1,8 @@
-"""Measures rock that a fluid moves in the centres of cells and of faces, where finite volume methods have their unknowns.
+"""Errors of poroelastic results at the centres of cells and faces, where finite volume methods have their
+unknowns.
 
-The norm is discrete: of values at centres, weighted by the volumes of cells, or of the pyramids over a face to the centres of its cells."""
+The norm is discrete: values at centres are weighted by the volumes of cells, or of the pyramids from a face to
+the centres of its cells."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,15 +21,15 @@ LOCAL = {9: [(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)],
 class Sides:
     """Pairs of a cell and one of its faces."""
     cell: np.ndarray
-    face: np.ndarray    # a number that both sides have
+    face: np.ndarray    # number of the face, equal on both sides
     area: np.ndarray    # outward area vectors [side, d]
     centre: np.ndarray  # [side, d]
-    away: np.ndarray    # distance from the centre of the cell
-    copies: np.ndarray  # how many sides the face has
+    away: np.ndarray    # distance of the face from the cell centre
+    copies: np.ndarray  # number of cells at the face
     corners: np.ndarray  # [side, corner, d]
 
     def mean(self, values):
-        """Over the sides of the face, at each of them."""
+        """Mean over the sides of the face, at each side."""
         shape = (self.face.max() + 1, *values.shape[1:])
         sums = np.zeros(shape)
         np.add.at(sums, self.face, values)
@@ -35,7 +37,7 @@ class Sides:
 
 
 def corner_numbers(run):
-    """[cell, corner]: nodes of corners."""
+    """Corner nodes of cells, [cell, corner]."""
     return vtk_to_numpy(run.rock.GetCells().GetConnectivityArray()).reshape(run.rock.GetNumberOfCells(), -1)[:, :n_corners(run)]
 
 
@@ -45,7 +47,7 @@ def n_corners(run):
 
 
 def sides_of(run):
-    """A node that pieces of the mesh share is in each of them, and counts once."""
+    """Returns the sides of all cells. Nodes shared by pieces of the mesh occur in every piece and are merged."""
     points, place = np.unique(vtk_to_numpy(run.rock.GetPoints().GetData())[:, :run.dimension], axis=0, return_inverse=True)
     nodes, d = place.ravel()[corner_numbers(run)], run.dimension
     n = nodes.shape[1]
@@ -70,8 +72,10 @@ def moments(run):
 
 
 def outflows(run, known, sides):
-    """(flow out of the cell through each side, pressure on it), of schemes rt0 and tpfa, from pressures and mean velocities of cells: the
-    pressure on a face is the same seen from both sides, and known on the boundary."""
+    """Returns (outflow of the cell through each side, pressure on it), for the schemes rt0 and tpfa.
+
+    Both follow from pressures and mean velocities of cells: the pressure on a face is equal on both sides, and
+    known on the boundary."""
     p, size = flow_measure.array(run, "pressure")[sides.cell], np.linalg.norm(sides.area, axis=1)
     m, d = known.mobility, run.dimension
     inside = sides.copies == 2
@@ -80,9 +84,9 @@ def outflows(run, known, sides):
         return m * size * (p - trace) / sides.away, trace
     v = flow_measure.array(run, "Darcy velocity")[:, :d][sides.cell]
     middle = flow_measure.corners(run)[:, :d + 1].mean(axis=1)[sides.cell]
-    weight = (moments(run) / (d * m))[sides.cell]  # of div q/d in what the pressure falls by towards a face
+    weight = (moments(run) / (d * m))[sides.cell]  # coefficient of div q/d in the pressure drop towards a face
     falls, passes = p - (v * (sides.centre - middle)).sum(axis=1) / m, (v * sides.area).sum(axis=1) / size
-    gap, sum_of = 2 * (falls - sides.mean(falls)), 2 * sides.mean(passes)  # to the other side
+    gap, sum_of = 2 * (falls - sides.mean(falls)), 2 * sides.mean(passes)  # difference and sum over both sides
     other_weight, other_away = 2 * sides.mean(weight) - weight, 2 * sides.mean(sides.away) - sides.away
     within = (gap * other_away - sum_of * other_weight) / (weight * other_away + sides.away * other_weight)
     growth = np.where(inside, within, (falls - known.pressure(sides.centre)) / weight)  # div q/d
@@ -90,7 +94,7 @@ def outflows(run, known, sides):
 
 
 def stress_at(run, known, sides):
-    """Of the rock, at the centres of sides, from the displacement of the cell."""
+    """Effective stress of the rock at the centres of sides, from the displacement in the cell."""
     kind, d = run.rock.GetCellType(0), run.dimension
     cell, n = CELLS[kind](), run.rock.GetCell(0).GetNumberOfPoints()
     nodes = vtk_to_numpy(run.rock.GetCells().GetConnectivityArray()).reshape(-1, n)
@@ -113,14 +117,16 @@ def local_centre(kind, d, k):
 
 
 def centre_errors(run, known):
-    """Relative errors of pressure and displacement at the centres of cells, of flow and of force at those of faces, and of flow through
-    faces; the force is the mean of what the cells on both sides say."""
+    """Relative errors: pressure and displacement at cell centres, flow and force at face centres, flow through
+    faces (`through`).
+
+    The force is the mean of the values from both cells."""
     sides, d = sides_of(run), run.dimension
     _, volumes = flow_measure.cell_points(run)
     volume, middle = volumes.sum(axis=1), flow_measure.corners(run)[:, :n_corners(run)].mean(axis=1)
     p, exact_p = flow_measure.array(run, "pressure"), known.pressure(middle)
     u, exact_u = np.stack([centre_value(run, k) for k in range(d)], axis=1), known.displacement(middle)
-    weights = np.linalg.norm(sides.area, axis=1) * sides.away / d  # both sides of a face count, with one value
+    weights = np.linalg.norm(sides.area, axis=1) * sides.away / d  # both sides of a face count, with the same value
     flow, trace = outflows(run, known, sides)
     flow = flow[:, None]
     velocities = known.velocity(sides.centre), face_means(known.velocity, sides.corners)
@@ -134,7 +140,7 @@ def centre_errors(run, known):
 
 
 def centre_value(run, component):
-    """Of the displacement, at the centre of cells."""
+    """Displacement component at the cell centres."""
     kind, d, n = run.rock.GetCellType(0), run.dimension, run.rock.GetCell(0).GetNumberOfPoints()
     shape = [0.0] * n
     CELLS[kind]().InterpolateFunctions([*([1 / (d + 1)] * d if kind in SIMPLICES else [0.5] * d), *[0.0] * (3 - d)], shape)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the scenes of poroelasticity of this measurement into xml/verification."""
+"""Writes the poroelastic scenes of this measurement into xml/verification. Requires SymPy and gmsh."""
 import sys
 
 import flow_scenes
@@ -15,7 +15,7 @@ def rock(of):
 
 
 def rollers(d, *sides):
-    """No motion along the normal of these sides."""
+    """Boundary conditions without normal displacement on these sides."""
     axis = {"west": 0, "east": 0, "south": 1, "north": 1, "bottom": 2, "top": 2}
     return {side: {"boundary": side, "displacement": ["0" if k == axis[side] else "free" for k in range(d)]} for side in sides}
 
@@ -57,7 +57,7 @@ def store(name, comment, content, time):
 
 
 def unit_rock(permeability, **more):
-    """Both Lame's constants are 1; names with underscores."""
+    """Rock with both Lame's constants 1; names of further entries have underscores instead of spaces."""
     return {"type": "elastic", "Lame's first parameter": 1.0, "shear modulus": 1.0, "permeability": [permeability],
             **{name.replace("_", " "): value for name, value in more.items()}}
 
@@ -79,8 +79,11 @@ def manufactured_solutions():
 
 
 def halved_block(d, known, rock, joint, flow, heat=None):
-    """The unit square or cube with a fracture between its halves `below` and `above`, and exact values of `known` on its boundary: by half
-    its displacement, body force, pressure and source; with heat a temperature and the heat put in; of the fracture likewise."""
+    """Content of a scene: unit square or cube with a fracture between the halves `below` and `above`, and exact
+    boundary values.
+
+    `known` contains, for each half, displacement, body force, pressure and source; with heat also temperature
+    and heat source; and the corresponding entries of the fracture."""
     sides, low, high, last = flow_scenes.sides(d), [0.0] * (d - 1), [1.0] * (d - 1), "xyz"[d - 1]
     halves = {"below": ([0.0] * d, [*high, 0.5]), "above": ([*low, 0.5], [1.0] * d)}
     mesh = flow_scenes.box(d, 4, {"fracture": flow_scenes.across(d, d - 1, 0.5)}, halves)
@@ -112,7 +115,7 @@ def opened_fractures():
 
 
 def joint_of(known):
-    """Of poro_exact.Joined, in which fluid flows so easily that pressures are uniform."""
+    """Joint of poro_exact.Joined, with such a permeability that pressures are uniform."""
     closing = {"dilation angle": 10.0, "initial gap": known.gap, "maximum closure": known.closure,
                "normal stiffness": known.normal_stiffness}
     return {"type": "joint", "friction coefficient": known.friction, "tangential stiffness": known.shear_stiffness,
@@ -120,7 +123,7 @@ def joint_of(known):
 
 
 def joined_block(name, known, d, comment):
-    """The pressure is that of a well in the fracture; the rock lets nothing through."""
+    """Writes a block whose fracture has the pressure of a well; the rock is almost impermeable."""
     down, up = flow_scenes.sides(d)[-2:]
     path, (along, across) = known.path(), known.way
     stress = {2: [0.0, -known.N0, 0.0, known.T0], 3: [0.0, 0.0, -known.N0, 0.0, 0.6 * known.T0, 0.8 * known.T0]}[d]
@@ -149,8 +152,10 @@ def joined_blocks():
 
 
 def filled_cracks():
-    """The displacement on the box is that of the crack with the volume that has been put in, in the first of two steps. The crack is open
-    by 1e-4 from the start: what is closed and cannot give way would have no room for a fluid that cannot be compressed."""
+    """Writes the scenes of cracks that are filled in the first of two steps.
+
+    The displacement on the box is that of the crack with the injected volume. The crack has an initial opening
+    of 1e-4: a closed crack would have no volume for an incompressible fluid."""
     displacements = {2: make_scenes.crack_displacement(1, 0.5 * poro_exact.FILLED, 0.25),
                      3: make_scenes.penny_displacement(poro_exact.FILLED, 0.25)}
     joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -1e-4, "initial aperture": 1e-4}
@@ -169,7 +174,7 @@ ALPHA, STORED = 0.8, 0.5
 
 
 def rock_in_time():
-    """Of poro_exact.InTime: nothing but steps causes errors."""
+    """Writes the scene of poro_exact.InTime, with errors of the time steps only."""
     exact = {"displacement": ["sin(2*t)*x", "sin(2*t)*y/2"], "pressure": "sin(3*t)*(1+x-y/2)"}
     store("poro_time_rock", "Pressure and strain of rock, linear in space, that change with time. See perf/verification/poro_exact.py.",
           {**flow_scenes.box(2, 4, {}, cell="quadrilateral"),
@@ -180,7 +185,9 @@ def rock_in_time():
 
 
 def fracture_in_time():
-    """Of poro_exact.OpenInTime. Strain along z over pressure is (alpha - 1)/3; sources are what pores and the fracture take up."""
+    """Writes the scene of poro_exact.OpenInTime.
+
+    The strain along z is (alpha - 1)/3 times the pressure; sources are the rates stored by pores and fracture."""
     c, shrinks = 0.3, (1 - ALPHA) / 3
     source = f"exp({c}*sin(3*t))*3*cos(3*t)*({STORED}+{c}*(0.1+{STORED}*sin(3*t)))-{3 * ALPHA * shrinks!r}*cos(3*t)"
     inside = f"exp({c}*sin(3*t))*(sin(2*t)/5+{3 * c!r}*cos(3*t)*(0.05+(1-cos(2*t))/10))"

@@ -26,23 +26,24 @@ import style  # noqa: E402
 CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES + poro_fractures.CASES + heat_cases.CASES
 ESTIMATES = ("jump", "stress")
 ESTIMATE = ("Output.error estimate=true",)
-WITHIN = 2  # a factor by which an estimate may be off
-SLACK = 0.15  # by which an observed order may fall short of its bound: meshes are not yet fine
+WITHIN = 2  # allowed factor between estimated and true error
+SLACK = 0.15  # allowed shortfall of an observed order, because meshes are not in the asymptotic range
 
 
 @dataclass
 class Row:
-    """One run."""
+    """Results of one run."""
     series: str
     mesh: str
     cells: int
     unknowns: int
     errors: dict
-    effectivity: dict  # what the run estimates over what is true
+    effectivity: dict  # estimated over true error
     newton: int
     krylov: int
     seconds: float
-    orders: dict = field(default_factory=dict)  # from the mesh before, with h ~ cells^(-1/d); of equal meshes from the steps before
+    # from the previous mesh, with h ~ cells^(-1/d); for equal meshes from the number of steps
+    orders: dict = field(default_factory=dict)
     steps: int = 1
 
 
@@ -80,7 +81,8 @@ def line(row, names, estimates):
 
 
 def missed(case, rows, quick):
-    """What is wrong, in words. Bounds on meshes that have not been run say nothing."""
+    """Returns messages of violated bounds and the number of checked bounds. Bounds on meshes without a run are
+    skipped."""
     wrong, judged = [], 0
     for bound in case.bounds:
         if isinstance(bound, cases.Bound):
@@ -104,8 +106,10 @@ def missed(case, rows, quick):
 
 
 def last_line(case, rows):
-    """CASE order_u=.. order_traction=.. error=.. unknowns=..: of the mesh that `headline` names, or of the last run of its series.
-    Of flow, orders are those of pressure and velocity."""
+    """Summary "CASE order_u=.. order_traction=.. error=.. unknowns=.." of the mesh in `headline`, or of the last
+    run of its series.
+
+    For flow, the orders are those of pressure and velocity."""
     series, mesh, error = case.headline
     of = [row for row in rows if row.series == series]
     row = next((row for row in of if row.mesh == mesh), of[-1] if of else None)
@@ -115,7 +119,7 @@ def last_line(case, rows):
 
 
 def effectivities(case, rows):
-    """CASE jump_estimate=LEAST..MOST stress_estimate=..: over the true errors, of all runs."""
+    """Summary "CASE jump_estimate=LEAST..MOST stress_estimate=..": ratios of estimated to true errors over all runs."""
     words = case.name
     for name in ESTIMATES:
         all_of = [row.effectivity[name] for row in rows if name in row.effectivity]
@@ -124,7 +128,7 @@ def effectivities(case, rows):
 
 
 def looks(series):
-    """How each series is drawn: coloured by its first word, dashed for order 1, with a mark for what stands between."""
+    """Line styles by series: colour by the first word, dashed for order 1, marker by the words between."""
     parts = [name.split() for name in series]
     first, middle = (list(dict.fromkeys(of)) for of in ([p[0] for p in parts], [" ".join(p[1:-1]) for p in parts]))
     return {name: dict(color=style.LINES[first.index(p[0]) % len(style.LINES)], linestyle="--" if p[-1] == "1" else "-",
@@ -132,7 +136,7 @@ def looks(series):
 
 
 def draw(case, rows, file):
-    """The error of the last line against unknowns and against seconds, a line for each series."""
+    """Draws the error of the last line against unknowns and seconds, with a line for each series."""
     error, look = case.headline[2], looks(list(dict.fromkeys(row.series for row in rows)))
     figure, both = style.plt.subplots(1, 2, figsize=(8.6, 3.6), sharey=True)
     for axes, quantity in zip(both, ("unknowns", "seconds")):
@@ -151,7 +155,7 @@ def draw(case, rows, file):
 
 
 def measured(options, case):
-    """The rows of a case, printed as they come, and what is wrong."""
+    """Runs and prints a case; returns its rows and messages of failed runs."""
     rows, wrong, estimates = [], [], ESTIMATES if case.jumps else ()
     chosen = [(one, one.meshes[:one.quick] if options.quick else one.meshes) for one in case.series]
     names = None

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Reference of the case free_sides: writes free_sides.csv, by finite elements of its own. Needs SciPy.
+"""Reference of the case free_sides, by an independent finite-element program: writes free_sides.csv. Requires
+SciPy.
 
-Unit square in plane strain, fracture y = 1/2, bottom u = 0, top u = (d_t, d_n), sides free of traction. The fracture sticks, with
-tangential stiffness K_t: u_y is continuous, u_x doubled on the fracture. Quadratic elements, graded towards the corners and the
-mouths of the fracture. The problem is linear; shear d = (1, 0) and compression d = (0, -1), which makes no tangential jump, add up.
-It checks itself: change between meshes, energy, equilibrium of the fracture, symmetry, and a uniform solution."""
+Unit square in plane strain with the fracture y = 1/2; bottom u = 0, top u = (d_t, d_n), traction-free sides.
+The fracture sticks with the tangential stiffness K_t: u_y is continuous, u_x has two values on the fracture.
+Quadratic elements are graded towards the corners and the fracture ends. The problem is linear: the solutions
+for shear d = (1, 0) and compression d = (0, -1), which has no tangential jump, are superposed. Checks: change
+between meshes, energy, equilibrium of the fracture, symmetry, a uniform solution."""
 import sys
 from pathlib import Path
 
@@ -15,13 +17,13 @@ import scipy.sparse.linalg as sl
 
 
 def grade(n, r):
-    """symmetric points on [0,1] graded towards both ends, n even"""
+    """Symmetric points on [0, 1] graded towards both ends, n even."""
     t = np.linspace(0, 1, n // 2 + 1) ** r * 0.5
     return np.concatenate([t, 1 - t[-2::-1]])
 
 
 def fem(n, G, lam, Kt, dt, dn, r=2.5):
-    """n x 2n quadratic elements; returns resultants, jumps, displacements above the fracture, energy"""
+    """Solves on n x 2n quadratic elements; returns resultants, jumps, displacements above the fracture, energy."""
     X = grade(n, r)
     Y = np.concatenate([0.5 * grade(n, r), 0.5 + 0.5 * grade(n, r)[1:]])
     nx, ny = n, 2 * n

@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
-"""Reference of the case t_junction: a pressurised fracture that ends on a frictional one, by boundary elements. Takes a minute.
+"""Reference of the case t_junction by boundary elements: a pressurised fracture that ends on a frictional one.
+Takes a minute.
 
-Displacement discontinuities, constant per element, on straight fractures in the infinite plane (plane strain; Crouch and
-Starfield 1983), with contact and Coulomb friction by an active set. Elements are refined towards tips and the junction
-(cosine spacing), and values are extrapolated from the two finest divisions (first order). Horizontal fracture (-25, 50)-(25, 50),
-vertical one (0, -50)-(0, 50) under a fluid pressure of 100 MPa, sigma_yy = -100 MPa, sigma_xx = 0, friction angle 30 degrees, bulk
-modulus 38.89 GPa, shear modulus 29.17 GPa: Phan et al. (2003), as in the example "intersecting fractures" of GEOS.
-It checks itself: a crack under pressure and an inclined frictional crack against exact values, contact and friction element by
-element, and the values that can be read off the figures of Phan et al., to a few per cent."""
+Displacement discontinuities, constant per element, on straight fractures in the infinite plane (plane strain;
+Crouch and Starfield 1983), with contact and Coulomb friction by an active set. Elements are refined towards
+tips and junction (cosine spacing). Values are extrapolated from the two finest divisions (first order).
+
+Horizontal fracture (-25, 50)-(25, 50); vertical fracture (0, -50)-(0, 50) under a fluid pressure of 100 MPa;
+sigma_yy = -100 MPa, sigma_xx = 0, friction angle 30 degrees, bulk modulus 38.89 GPa, shear modulus 29.17 GPa:
+Phan et al. (2003), as in the GEOS example "intersecting fractures".
+
+Checks: a pressurised crack and an inclined frictional crack against exact values; contact and friction on every
+element; values read from the figures of Phan et al., to a few per cent."""
 import sys
 from pathlib import Path
 
@@ -15,7 +19,7 @@ import numpy as np
 
 
 def branch(p, q, n, grade=(1, 1)):
-    """n elements from p to q; grade=(start, end): 1 = refined towards that end"""
+    """Returns the end points of n elements from p to q; grade=(start, end): 1 = refined towards that end."""
     k = np.linspace(0, 1, n + 1)
     if grade == (1, 1):
         t = 0.5 * (1 - np.cos(np.pi * k))
@@ -30,8 +34,11 @@ def branch(p, q, n, grade=(1, 1)):
 
 
 def assemble(A, B, G, nu):
-    """elements from A[i] to B[i].  Returns midpoints, lengths, tangents, normals (tangent turned by +90 deg) and the
-    matrix K: change of local traction (normal block, tangential block) caused by the jumps (normal, tangential)"""
+    """Assembles elements from A[i] to B[i]. Returns midpoints, lengths, tangents, normals (tangent rotated by +90
+    deg) and K.
+
+    The matrix K gives the change of local traction (normal block, tangential block) caused by the jumps
+    (normal, tangential)."""
     M = 0.5 * (A + B)
     L = np.linalg.norm(B - A, axis=1)
     t = (B - A) / L[:, None]
@@ -65,8 +72,10 @@ def assemble(A, B, G, nu):
 
 
 def solve(A, B, G, nu, Sinf, p=0.0, mu=0.0, maxit=100):
-    """remote stress Sinf, fluid pressure p in the fractures (scalar or per element), friction coefficient mu.
-    Returns contact traction (ln, lt) (total normal traction = ln - p), jumps jn, jt, state 0 open, 1 stick, 2 slip"""
+    """Solves for the remote stress Sinf, fluid pressure p (scalar or per element) and friction coefficient mu.
+
+    Returns contact traction (ln, lt) (total normal traction = ln - p), jumps jn, jt, and state: 0 open, 1
+    stick, 2 slip. Raises RuntimeError if the active set does not converge."""
     M, L, t, n, K = assemble(A, B, G, nu)
     N = len(M)
     p = np.broadcast_to(p, N)
@@ -120,7 +129,7 @@ def solve(A, B, G, nu, Sinf, p=0.0, mu=0.0, maxit=100):
         key = (new.tobytes(), ns.tobytes())
         if (new == state).all() and (ns == sg).all() and np.abs(lam - old).max() <= 1e-10 * np.abs(lam).max():
             break
-        if key in seen and it - seen[key] > 3:  # the active set cycles: change one element only
+        if key in seen and it - seen[key] > 3:  # cyclic active set: change one element only
             d = np.where((new != state) | (ns != sg))[0]
             if len(d) > 1:
                 k = d[it % len(d)]
@@ -137,7 +146,7 @@ def solve(A, B, G, nu, Sinf, p=0.0, mu=0.0, maxit=100):
 
 
 def violation(r, mu):
-    """largest violation of contact and friction conditions, relative to the largest traction or jump"""
+    """Largest violation of contact and friction conditions, relative to the largest traction or jump."""
     T = max(np.abs(r["ln"]).max(), np.abs(r["lt"]).max())
     J = max(np.abs(r["jn"]).max(), np.abs(r["jt"]).max())
     slip = r["state"] == 2
@@ -151,7 +160,7 @@ def violation(r, mu):
 
 
 def integrals(r, on, axis):
-    """coordinates along a fracture's elements, integrals of the normal and tangential jump up to them"""
+    """Coordinates along the elements of a fracture, and integrals of the normal and tangential jump up to them."""
     L = r["L"][on]
     ends = np.append(r["M"][on][:, axis] - L / 2, r["M"][on][-1, axis] + L[-1] / 2)
     return np.stack([ends, *(np.append(0, np.cumsum(r[name][on] * L)) for name in ("jn", "jt"))], axis=1)
