@@ -1,4 +1,5 @@
-// What the programs of measurements share: NAME SCENE [PATH=VALUE...] measures something of a scene and prints JSON.
+// Common parts of the measurement programs: NAME SCENE [PATH=VALUE...] measures properties of a scene and prints
+// JSON.
 #pragma once
 
 #include "base/heap.hpp"
@@ -17,7 +18,7 @@ namespace sprekk::perf {
 
 using nlohmann::json;
 
-/// Seconds on the clock until all ranks are done. Collective.
+/// Wall-clock seconds until all ranks have finished. Collective.
 inline Real time_of(const Comm& comm, const std::function<void()>& work) {
   comm.barrier();
   const auto begin = std::chrono::steady_clock::now();
@@ -26,17 +27,17 @@ inline Real time_of(const Comm& comm, const std::function<void()>& work) {
   return std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// The main() of a program: its exit status, 1 after an Error.
+/// Implements main() of a program. Returns the exit status: 1 after an Error, which rank 0 prints to stderr.
 inline int run(const std::string& name, int argc, char** argv,
                const std::function<json(const model::Scene&, RCP<const Comm>)>& measure) {
-  base::keep_heap();  // as the main program does
+  base::keep_heap();  // as in the main program
   Tpetra::ScopeGuard guard(&argc, &argv);
   const auto comm = Tpetra::getDefaultComm();
   try {
     SPREKK_CHECK(argc > 1, "usage: {} SCENE [PATH=VALUE...]", name);
     const auto result = measure(model::read_scene(*comm, argv[1], {argv + 2, argv + argc}), comm);
     if (comm->getRank() == 0) std::cout << result.dump(2) << '\n';
-  } catch (const Error& error) {  // the same on every rank
+  } catch (const Error& error) {  // thrown on every rank
     if (comm->getRank() == 0) std::cerr << name << ": " << error.what() << '\n';
     return 1;
   }

@@ -21,9 +21,9 @@ import meshes  # noqa: E402
 import style  # noqa: E402
 
 REQUESTS = (0.1, 0.01, 0.001)
-OVERSHOOT = 1.5  # by which a true error may exceed what was asked
+OVERSHOOT = 1.5  # allowed ratio of the true error to the request
 SPEEDUP = {2: 5, 3: 3}  # at 1 %
-REFERENCE = 5e-5  # asked of the run that stands in for an exact value
+REFERENCE = 5e-5  # request of the reference run, if no exact value is known
 TIME_LIMIT = 1800
 
 
@@ -32,42 +32,44 @@ class Case:
     name: str
     scene: str
     quantity: str
-    fractures: str        # names, separated by commas; "": all. Of a reaction the boundary and the component; of a flow "well" or "boundary" and its name
-    coarse: object        # entries, or a function of a folder that makes a mesh: where adaptive runs begin
-    uniform: list         # the same, from coarse to fine, of order 1
-    exact: float = None   # None: that of a run of order 2 that is asked for `reference`
+    # fracture names, separated by commas ("": all); reaction: boundary and component; flow: "well" or "boundary" and
+    # its name
+    fractures: str
+    coarse: object        # first mesh of adaptive runs: entries, or a function of a folder that makes a mesh
+    uniform: list         # meshes of order 1 from coarse to fine, in the same form
+    exact: float = None   # None: value of a run of order 2 with the request `reference`
     sets: tuple = ()
     dimension: int = 2
     requests: tuple = REQUESTS
     orders: tuple = (1, 2)  # of adaptive runs
     reference: float = REFERENCE
-    finest: object = None   # entries of a mesh on which a run of order 2 is the reference
-    uniform_2: list = None  # uniform meshes of order 2; None: those of order 1 but for the finest
-    seconds: float = None   # limit of an adaptive run, if not that of all cases
+    finest: object = None   # entries of the mesh of a reference run of order 2
+    uniform_2: list = None  # uniform meshes of order 2; None: those of order 1 except the finest
+    seconds: float = None   # time limit of an adaptive run; default: --seconds
 
 
 @dataclass
 class Row:
     kind: str             # uniform or adaptive
     order: int
-    asked: float          # of adaptive runs, relative
+    asked: float          # relative request of adaptive runs
     cells: int
     seconds: float
     value: float
     estimate: float = math.nan
     reached: bool = True
-    error: float = math.nan  # relative, true
+    error: float = math.nan  # true relative error
 
 
 def crack(scene, quantity, value, angle=0):
-    """One in an infinite body, with the exact displacement on a box."""
+    """Arguments of a case of a crack in an infinite body, with the exact displacement on a box."""
     mesh = lambda h: lambda folder: meshes.uniform_crack(folder, h, angle)  # noqa: E731
     return dict(scene=f"verification/{scene}.xml", quantity=quantity, fractures="crack", coarse=mesh(1.6),
                 uniform=[mesh(h) for h in (0.8, 0.4, 0.2, 0.1, 0.05, 0.025)], exact=value)
 
 
 def free_sides_shear():
-    """That the reference has."""
+    """Shear force of the reference."""
     rows = csv.reader(open(ROOT / "perf/verification/references/free_sides.csv"))
     return next(float(row[0]) for row in rows if row[0][0].isdigit())
 
@@ -77,7 +79,7 @@ def box(*counts, dimension=2):
 
 
 def cases():
-    mean = math.pi / 4  # of the root of 1 - x^2
+    mean = math.pi / 4  # mean of sqrt(1 - x^2)
     psi, G, K, load = math.radians(20), 10e9, 16.67e9, 100e6
     drop = load * math.sin(psi) * (math.cos(psi) - math.tan(math.radians(30)) * math.sin(psi))
     nu = (K - 2 * G / 3) / (2 * (K + G / 3))
@@ -121,7 +123,7 @@ def cases():
 
 
 def network(folder, relative, at_tips, size):
-    """Of the scene random_3d_50, with cells of other sizes."""
+    """Mesh of the scene random_3d_50 with other cell sizes. Raises NoGmsh if it fails."""
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"network_50_{relative:g}_{at_tips:g}_{size:g}.msh"
     if not file.is_file():
@@ -140,7 +142,7 @@ def entries(source, folder):
 
 
 def unasked(scene, folder):
-    """A scene that asks for no error by itself."""
+    """Returns the scene, or a copy without its section Accuracy."""
     tree = ElementTree.parse(scene)
     asked = tree.getroot().find("ParameterList[@name='Accuracy']")
     if asked is None:
@@ -152,7 +154,7 @@ def unasked(scene, folder):
 
 
 def start(options, case, order, source, asked, label, others=()):
-    """The results of a run; without `asked` on the mesh as it is."""
+    """Runs a case and returns its results; without `asked` on the given mesh. Raises RuntimeError if the run fails."""
     directory = options.output / re.sub(r"\W+", "_", case.name) / label
     shutil.rmtree(directory, ignore_errors=True)
     mesh = entries(source, options.output / "meshes")
@@ -180,7 +182,7 @@ def start(options, case, order, source, asked, label, others=()):
 
 
 def value_of(case, results):
-    """The quantity as results.json has it without being asked for."""
+    """Quantity of a run without accuracy request, from results.json."""
     if case.quantity == "reaction":
         boundary, component = case.fractures.split()
         return results["steps"][-1]["reactions"][boundary]["xyz".index(component)]
@@ -194,7 +196,7 @@ def value_of(case, results):
     area = sum(one["area"] for one in chosen)
     if case.quantity in ("slip", "opening"):
         return sum(one["area"] * one[f"mean_{case.quantity}"] for one in chosen) / area
-    return sum(one["area"] * math.hypot(*one["mean_traction"]["local"][1:]) for one in chosen)  # of one sign
+    return sum(one["area"] * math.hypot(*one["mean_traction"]["local"][1:]) for one in chosen)  # shear of one sign
 
 
 def uniform(options, case, order, k, source, steps):
@@ -214,8 +216,10 @@ def adaptive(options, case, order, asked, label=None):
 
 
 def seconds_at(rows, error):
-    """Of uniform meshes, those that an error takes: between runs log by log, beyond the first and the last as the two beside them
-    tell, whose errors shrink; the least of all orders."""
+    """Seconds that uniform meshes need for an error: the least over all orders.
+
+    Values are interpolated between runs, log-log, and extrapolated from the two nearest runs. Runs whose error
+    does not decrease are skipped."""
     best = math.inf
     for order in {row.order for row in rows}:
         of = []
@@ -232,7 +236,7 @@ def seconds_at(rows, error):
 
 
 def measure(options, case):
-    """Uniform runs have the steps of the most accurate adaptive one."""
+    """Runs a case; uniform runs have the time steps of the most accurate adaptive run."""
     requests = case.requests[:2] if options.quick else case.requests
     runs = [adaptive(options, case, order, asked) for order in case.orders for asked in requests]
     reference, steps = reference_of(options, case, runs[-1][1])
@@ -246,7 +250,7 @@ def measure(options, case):
 
 
 def reference_of(options, case, steps):
-    """A value to compare with, and with how many steps."""
+    """Returns the reference value and the number of time steps."""
     if case.exact:
         return case.exact, steps
     if case.finest:

@@ -14,15 +14,16 @@ sys.path.append(str(ROOT / "perf/krylov"))
 import linear  # noqa: E402
 
 SCENE = "contact/cycles_2d.xml"
-SERIES = {"direct": ((), 1000), "iterative": (("Mesh.cells={24, 24}", "Solver.Linear solver.type=iterative"), 200)}  # and the late step
-EARLY, QUICK_LATE = 20, 100  # the check of input before a run looks at up to 12 steps
-REPEATED = 5  # what depends on time, MPI's messages among it, only adds: the smallest of each counts
-MORE = 0.01  # that a late step may allocate, of an early one's: names of more digits, longer texts
+# and the late step
+SERIES = {"direct": ((), 1000), "iterative": (("Mesh.cells={24, 24}", "Solver.Linear solver.type=iterative"), 200)}
+EARLY, QUICK_LATE = 20, 100  # the input check before a run looks at up to 12 steps
+REPEATED = 5  # time-dependent parts, e.g. MPI messages, only add: the smallest run counts
+MORE = 0.01  # allowed relative increase of a late step: names with more digits, longer texts
 COLUMNS = {"solver": "", "step": "d", "calls": ".0f", "kB": ".0f"}
 
 
 def total(options, sets, steps):
-    """(calls, bytes) of a whole run, of whose steps only the last is written."""
+    """Returns (calls, bytes) of a whole run that writes only its last step: the smallest of REPEATED runs."""
     return [min(each) for each in zip(*(run(options, sets, steps) for _ in range(REPEATED)))]
 
 
@@ -36,12 +37,14 @@ def run(options, sets, steps):
     if done.returncode:
         sys.exit(f"allocations: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
     told = [json.loads(line) for line in file.read_text().splitlines()]
-    return max((process["calls"], process["bytes"]) for process in told)  # MPI's own processes do less
+    return max((process["calls"], process["bytes"]) for process in told)  # MPI's own processes allocate less
 
 
 def of_step(options, sets, step):
-    """(calls, bytes) of a step, the mean of two. The text of results.json takes twice the memory whenever it outgrows
-    what it has: of two places, at one of which that may be, the smaller counts."""
+    """Returns (calls, bytes) of a step, the mean of two steps.
+
+    The text buffer of results.json doubles whenever it is full. This may happen at one of the two places; the
+    smaller value counts."""
     places = [[(after - before) / 2 for after, before in zip(total(options, sets, at), total(options, sets, at - 2))] for at in (step, step + 4)]
     return [min(each) for each in zip(*places)]
 

@@ -1,5 +1,5 @@
-// Preloaded into the program, counts what it allocates; the totals are added to the file that SPREKK_ALLOCATIONS names,
-// a line for each process that ends: MPI starts others.
+// Library preloaded into the program that counts its allocations. Each process appends a line with its totals to
+// the file named by SPREKK_ALLOCATIONS; MPI starts further processes.
 #include <malloc.h>
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// bandwidth SCENE [PATH=VALUE...]: times the parts of the scene's first step, and the memory bandwidth that the same
-// ranks have, and prints them as JSON. The linear system that is solved again and again is that of the step's end.
+// bandwidth SCENE [PATH=VALUE...]: prints the times of the parts of the scene's first step, and the memory
+// bandwidth of the same ranks, as JSON. The repeated linear solves use the system at the end of the step.
 #include "base/trilinos_compat.hpp"
 #include "model/model.hpp"
 #include "perf/program.hpp"
@@ -11,7 +11,7 @@ namespace {
 using namespace sprekk;
 using perf::json, perf::time_of;
 
-constexpr std::size_t triad_length = 8u << 20;  // of each array on each rank: together several times the largest caches
+constexpr std::size_t triad_length = 8u << 20;  // per array and rank: together several times the largest caches
 constexpr int n_rounds = 25, n_solves = 3;
 constexpr std::size_t touched = std::size_t(2) << 30;  // bytes of all ranks together, more than the scene needs
 
@@ -32,19 +32,20 @@ Real median(std::vector<Real> values) {
   return values[values.size() / 2];
 }
 
-/// The median of each kernel, in rounds in which each has its turn, so that what else the machine does meets all alike.
+/// Median seconds of each kernel. The kernels run in turns, so that other load of the machine affects all of them.
+/// Collective.
 json medians(const Comm& comm, std::vector<Kernel> kernels) {
   json result;
   for (int round = 0; round <= n_rounds; ++round)
     for (auto& kernel : kernels) {
       const Real seconds = time_of(comm, kernel.work);
-      if (round > 0) kernel.seconds.push_back(seconds);  // the first warms up
+      if (round > 0) kernel.seconds.push_back(seconds);  // the first round warms up
     }
   for (const auto& kernel : kernels) result[kernel.name] = median(kernel.seconds);
   return result;
 }
 
-/// a = b + s c of STREAM (McCalpin 1995), which counts 24 bytes an entry.
+/// a = b + s c of STREAM (McCalpin 1995), counted as 24 bytes per entry.
 Kernel triad() {
   const View<Real*> a("a", triad_length), b("b", triad_length), c("c", triad_length);
   Kokkos::deep_copy(b, 1);
@@ -66,7 +67,7 @@ Kernel product(const std::string& name, RCP<const fields::Operator> A) {
   return {name, [=] { A->apply(*x, *y); }, {}};
 }
 
-/// What y = A x must at least move: values and columns of entries, starts of rows, x and y.
+/// Minimum bytes moved by y = A x: values and columns of entries, row offsets, x and y.
 Real bytes(const fields::CrsMatrix& A) {
   return base::n_local_entries(A) * (sizeof(Real) + sizeof(LocalIndex)) +
          base::n_local_rows(A) * (sizeof(std::size_t) + sizeof(Real)) + base::n_local_columns(A) * sizeof(Real);
@@ -78,7 +79,8 @@ json to_json(const base::Timers& timers) {
   return phases;
 }
 
-/// The step, and back: history and solver are then as they were at its begin. Returns the x of its end.
+/// Computes the step, then restores history and solver to its beginning. Returns x at the end of the step. Throws
+/// if the step does not converge. Collective.
 fields::BlockVector take_step(model::Model& model, Real t, json& result) {
   const auto start = model.save();
   const auto report = model.step_to(t);
@@ -91,7 +93,8 @@ fields::BlockVector take_step(model::Model& model, Real t, json& result) {
   return x;
 }
 
-/// Set-ups and solves with the Jacobians at the end x and at the begin of the step, by turns.
+/// Times set-ups and solves, with the Jacobians at the end x and at the beginning of the step alternately. Throws
+/// if a solve does not converge. Collective.
 void solve_again(model::Model& model, const fields::BlockVector& x, solve::CondensedSolve& linear,
                  const base::Timers& timers, json& result) {
   auto& system = model.system();
@@ -119,8 +122,8 @@ void solve_again(model::Model& model, const fields::BlockVector& x, solve::Conde
   result["elimination and set-up"] = median(setups);
 }
 
-/// Takes memory, and gives it back: the host of a virtual machine may first have to find what it has not lent yet,
-/// which takes longer than what is measured here.
+/// Allocates and frees memory; returns the seconds. The host of a virtual machine may first have to provide the
+/// memory, which would distort the later measurements. Collective.
 Real touch_memory(const Comm& comm) {
   return time_of(comm, [&] { std::vector<char>(touched / comm.getSize()).back() = 1; });
 }
@@ -133,7 +136,7 @@ json measure(const model::Scene& scene, RCP<const Comm> comm) {
   const auto x = take_step(model, t, result);
   auto& system = model.system();
   system.set_time(t, t - scene.time.start);
-  touch_memory(*comm);  // the host may have taken it back
+  touch_memory(*comm);  // the host may have reclaimed it
   const auto timers = rcp(new base::Timers);
   solve::CondensedSolve linear(system, scene.solver.linear_solver, timers);
   solve_again(model, x, linear, *timers, result);
@@ -141,7 +144,7 @@ json measure(const model::Scene& scene, RCP<const Comm> comm) {
   const auto& solver = *linear.solver().solver;
   SPREKK_CHECK(!solver.preconditioner().is_null(),
                "the scene is solved directly; Solver.Linear solver.type must be iterative");
-  const RCP<const fields::CrsMatrix> A = system.create_matrix()(0, 0);  // before elimination; numbers take no time
+  const RCP<const fields::CrsMatrix> A = system.create_matrix()(0, 0);  // before elimination; values are irrelevant
   result["medians"] = medians(*comm, {triad(), product("SpMV", A)});
   std::vector<Real> cycles;
   const auto preconditioner = product("preconditioner", solver.preconditioner());

@@ -17,7 +17,7 @@ STATE = "mixed"
 EDGE, QUICK = 30, 18  # cells along an edge: 111 and 29 thousand unknowns
 CELLS = {"tetrahedra": "tetrahedron", "hexahedra": "hexahedron"}
 COLUMNS = {"part": "", "count": "d", "ms": ".4g", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "asked": ""}
-ASKED = {  # of the last line: at least (+) or at most (-)
+ASKED = {  # targets of the last line: at least (+), at most (-)
     "spmv_share": (+1, 0.6), "assembly_spmv": (-1, 20), "assemblies": (-1, 1), "solve_kept_spmv": (-1, 300), "solve_first_spmv": (-1, 450),
     "newton_spmv": (-1, 350), "contact_share": (-1, 0.05)}
 CONTACT = "elastic-plastic jump"
@@ -25,7 +25,7 @@ FORMATS = {"triad": ".1f", "spmv_share": ".2f", "contact_share": ".3f"}
 
 
 class Measured:
-    """One run of bandwidth.cpp."""
+    """Results of one run of bandwidth.cpp."""
 
     def __init__(self, found):
         self.found, self.spmv = found, found["medians"]["SpMV"]
@@ -38,7 +38,8 @@ class Measured:
         return bytes_moved / seconds / self.triad
 
     def parts(self):
-        """name, count, seconds, share of the triad's bandwidth, share of the step's time, key of the last line."""
+        """Rows (name, count, seconds, share of the triad's bandwidth, share of the step's time, key of the last
+        line)."""
         found, phases = self.found, self.phases
         assembly, cycle, contact = phases["assembly of the linear part"], found["V-cycle"], phases[CONTACT]
         touch = found["first touch"]
@@ -79,7 +80,7 @@ def run(options, cells, edge):
 
 
 def draw(measured, file):
-    """The parts in products, with what is asked of them."""
+    """Draws the times of the parts in matrix-vector products, with their targets."""
     import style
     names = [name for name, *_ in next(iter(measured.values())).parts()][4:]
     figure, ax = style.plt.subplots(figsize=(7.5, 4.2))

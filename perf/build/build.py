@@ -22,7 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LAUNCHER = "--compile"  # build.py --compile LOG COMMAND...: runs the command and appends its CPU seconds to LOG
+LAUNCHER = "--compile"  # build.py --compile LOG COMMAND... runs the command and appends its CPU seconds to LOG
 PAGE, SCENE = "docs/develop/add_a_law.md", "xml/point/power_joint.xml"
 MAX_MINUTES = {"program": 10, "tests": 12, "law": 2}
 
@@ -42,7 +42,7 @@ def compile_and_log(log, *command):
 
 
 class Build:
-    """A build tree of its own copy of the sources."""
+    """Build tree with its own copy of the sources."""
 
     def __init__(self, options):
         self.source, self.tree, self.log = (options.output / name for name in ("source", "tree", "compilations.txt"))
@@ -58,10 +58,10 @@ class Build:
         launcher = [sys.executable, str(Path(__file__).resolve()), LAUNCHER, str(self.log)]
         self.run("cmake", "-S", self.source, "-B", self.tree, "-G", "Ninja",
                  f"-DCMAKE_CXX_COMPILER_LAUNCHER={';'.join(launcher)}")
-        self.log.unlink(missing_ok=True)  # checks of the compiler
+        self.log.unlink(missing_ok=True)  # compiler checks
 
     def run(self, *command):
-        """CPU and wall seconds of a command."""
+        """Runs a command; returns its CPU and wall seconds. Exits if it fails."""
         cpu, wall = cpu_seconds(), time.monotonic()
         done = subprocess.run([str(word) for word in command], cwd=self.source, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True)
@@ -73,7 +73,8 @@ class Build:
         return self.run("ninja", "-C", self.tree, "-j", self.jobs, target)
 
     def law(self):
-        """Applies the change of the page, builds the program and runs the scene of the new law."""
+        """Applies the patch of the page, builds the program and runs the scene of the new law; returns CPU and
+        wall seconds."""
         text = (self.source / PAGE).read_text()
         change = self.source / "page.diff"
         change.write_text(re.search(r"^```diff\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)[1])
@@ -83,18 +84,18 @@ class Build:
         return [a + b for a, b in zip(built, ran)]
 
     def compilations(self):
-        """{object file: CPU seconds} of those since the last call."""
+        """Compilations since the last call, {object file: CPU seconds}."""
         lines = self.log.read_text().splitlines() if self.log.exists() else []
         self.log.unlink(missing_ok=True)
         return {name: float(seconds) for seconds, name in (line.split(maxsplit=1) for line in lines)}
 
 
 def count_lines(build, objects):
-    """{object file: lines after preprocessing}."""
+    """Number of lines after preprocessing, {object file: lines}."""
     commands = json.loads(subprocess.run(["ninja", "-C", str(build.tree), "-t", "compdb"], check=True,
                                          stdout=subprocess.PIPE, text=True).stdout)
     of = {entry["output"]: entry["command"] for entry in commands}
-    plain = {}  # copies of headers that are precompiled, without the compiled form beside them
+    plain = {}  # copies of precompiled headers, without the compiled form next to them
     for k, header in enumerate(build.tree.rglob("cmake_pch.hxx")):
         plain[str(header)] = str(build.tree / f"plain_{k}.hpp")
         shutil.copy(header, plain[str(header)])
@@ -115,7 +116,7 @@ def count_lines(build, objects):
 
 
 def target_of(name):
-    """Folder of the object file, down to the package, the program or the tests of a subject."""
+    """Folder of the object file, up to the package, the program or the tests of a subject."""
     parts = Path(name.split("CMakeFiles")[0]).parts
     return "/".join(parts[:3]) or "."
 
@@ -154,7 +155,7 @@ def main():
         table.writerow(["build", "target", "file", "files", "CPU s", "preprocessed lines"])
         for what, work in (("program", lambda: build.ninja("sprekk_app")), ("tests", lambda: build.ninja("all")),
                            ("law", build.law)):
-            cpu, wall = work()  # each continues the one before
+            cpu, wall = work()  # each build continues the previous one
             seconds = build.compilations()
             if options.only not in (None, what):
                 continue

@@ -19,18 +19,18 @@ EDGES, QUICK = (15, 29, 45), (15,)  # cubes along an edge: 12, 81 and 292 thousa
 PEERS = {"gamg": "PETSc GAMG", "hypre": "PETSc hypre"}
 OURS = "Sprekk"
 YOUNG, POISSON, TRACTION = 1, 0.25, (0.1, 0, -1)  # as in the scene
-AGREE = 1e-6    # largest difference of displacements, relative to the largest displacement
-ASKED = 1       # of the ratio
+AGREE = 1e-6    # allowed difference of displacements, relative to the largest displacement
+ASKED = 1       # target of the ratio
 COLUMNS = {"program": "", "unknowns": "d", "iterations": "d", "residual": ".0e", "assembly s": ".2f", "set-up s": ".2f", "solve s": ".2f", "total s": ".2f",
            "over ours": ".2f", "difference": ".0e"}
 PARTS = {"assembly": ("set-up", "loads", "residual", "Jacobian", "local_elimination"), "set-up": ("set-up_of_the_solver", "set-up_of_linear_solver"),
          "solve": ("linear_solve",)}
-TOTAL = ("set-up", "set-up_of_the_solver", "time_steps")  # contain all of them, and what lies between
+TOTAL = ("set-up", "set-up_of_the_solver", "time_steps")  # these phases contain all parts and the time between them
 
 
 @dataclass
 class Row:
-    """One program on one mesh, the fastest of its runs."""
+    """Results of one program on one mesh, from its fastest run."""
     name: str
     unknowns: int
     iterations: int
@@ -45,7 +45,7 @@ class Row:
 
 
 def on_lattice(points, values, edge):
-    """The values in the order of the lattice, x fastest."""
+    """Values in the order of the lattice, x fastest."""
     place = np.rint(points * edge).astype(int) @ (1, edge + 1, (edge + 1)**2)
     sorted_values = np.empty_like(values)
     sorted_values[place] = values
@@ -78,7 +78,7 @@ def run_peers(options, edge, names):
 
 
 def fastest(rows):
-    """Of each program."""
+    """Returns the fastest run of each program."""
     best = {}
     for row in rows:
         if row.name not in best or row.seconds["total"] < best[row.name].seconds["total"]:
@@ -87,7 +87,7 @@ def fastest(rows):
 
 
 def draw(rows, file):
-    """CPU seconds per unknown, what they went into, program beside program."""
+    """Draws the CPU seconds per unknown by part, side by side for all programs."""
     import style
     sizes, names = sorted({row.unknowns for row in rows}), list(dict.fromkeys(row.name for row in rows))
     figure, ax = style.plt.subplots(figsize=(8.5, 3.4))

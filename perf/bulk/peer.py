@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""The block of bulk.py in DOLFINx, solved by conjugate gradients of PETSc; a program of its own, on one rank.
+"""Solves the block of bulk.py in DOLFINx with conjugate gradients of PETSc, as a separate program on one rank.
 
     peer.py DIR EDGE YOUNG POISSON TRACTION_X,Y,Z RESIDUAL NAME...    a NAME is one of SOLVERS
 
-Writes DIR/peer.json: CPU seconds, iterations, true residual of each solver; and its displacement to DIR/NAME.npy, [point of the lattice, component]."""
+Writes CPU seconds, iterations and true residual of each solver to DIR/peer.json, and its displacement, [point
+of the lattice, component], to DIR/NAME.npy."""
 import json
 import sys
 from pathlib import Path
@@ -16,7 +17,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 SMOOTHER = {"mg_levels_ksp_type": "chebyshev", "mg_levels_pc_type": "jacobi", "mg_levels_esteig_ksp_type": "cg", "mg_levels_ksp_chebyshev_esteig_steps": 20}
-SOLVERS = {  # options of the preconditioner
+SOLVERS = {  # preconditioner options
     "gamg": {"pc_type": "gamg", **SMOOTHER},
     "hypre": {"pc_type": "hypre", "pc_hypre_type": "boomeramg", "pc_hypre_boomeramg_strong_threshold": 0.5, "pc_hypre_boomeramg_coarsen_type": "HMIS",
               "pc_hypre_boomeramg_interp_type": "ext+i", "pc_hypre_boomeramg_P_max": 4},
@@ -25,7 +26,7 @@ COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
 
 
 def timed(seconds, name, work):
-    """What work() returns; its CPU seconds are added under the name."""
+    """Returns the result of work() and adds its CPU seconds under `name`."""
     begin = process_time()
     result = work()
     seconds[name] = seconds.get(name, 0) + process_time() - begin
@@ -33,7 +34,7 @@ def timed(seconds, name, work):
 
 
 def forms(space, young, poisson, traction):
-    """The stiffness and the load, compiled."""
+    """Compiled forms of stiffness and load."""
     domain = space.mesh
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     mu, lam = young / 2 / (1 + poisson), young * poisson / (1 + poisson) / (1 - 2 * poisson)
@@ -58,7 +59,7 @@ def assemble(stiffness, load, condition, seconds):
 
 
 def rigid_modes(space):
-    """Three translations and three rotations, orthonormal."""
+    """Near-null space of three translations and three rotations, orthonormal."""
     x = space.tabulate_dof_coordinates()
     modes = [la.create_petsc_vector(space.dofmap.index_map, space.dofmap.index_map_bs) for _ in range(6)]
     for k, mode in enumerate(modes):
@@ -74,7 +75,7 @@ def rigid_modes(space):
 
 
 def solve(A, b, options, residual, space, seconds):
-    """The solution and the number of iterations, from zero to that relative residual."""
+    """Returns the solution and the number of iterations, from zero to the relative residual."""
     database = PETSc.Options()
     for name, value in options.items():
         database[name] = value

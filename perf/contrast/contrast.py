@@ -14,7 +14,7 @@ sys.path.append(str(ROOT / "perf/krylov"))
 import linear  # noqa: E402
 
 EDGE = 12         # cells along an edge of the box
-TIME_LIMIT = 300  # seconds of a run
+TIME_LIMIT = 300  # seconds per run
 BOUNDS = {"max_krylov": 40, "failures": 0}
 CELLS = {"hexahedra": "hexahedron", "tetrahedra": "tetrahedron"}
 COLUMNS = {"cells, case": "", "unknowns": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".4g", "cuts": "d", "solves": "d", "mean": ".1f",
@@ -23,8 +23,8 @@ SOFT = linear.joint(stiffness=1) + ("Materials.crack.tangential stiffness=1",)
 CLOSED = dict(xx=-0.01, yy=-0.01, zz=-0.01)
 STICK = linear.table(**CLOSED, shear=0.002)
 MIXED = linear.table(xx=-0.006, yy=-0.009, zz=-0.012, shear=0.03) + SOFT
-SLIP = linear.table(**CLOSED, shear=0.06, xy=-0.06)  # shortest along the diagonal: no block is pulled out
-WEDGED = linear.table(**CLOSED, shear=0.06), linear.table(**CLOSED, shear=0.2)  # longest along the diagonal
+SLIP = linear.table(**CLOSED, shear=0.06, xy=-0.06)  # box shortest along the diagonal: no block is pulled out
+WEDGED = linear.table(**CLOSED, shear=0.06), linear.table(**CLOSED, shear=0.2)  # box longest along the diagonal
 SIDES = ("west", "east", "south", "north", "bottom", "top")
 UPRIGHT = {"bed1": ("1, 0, 0", "1, 6, 6"), "bed2": ("0, 5, 0", "6, 5, 6"), "inner z": ("5, 1, 1", "5, 5, 5")}
 
@@ -33,8 +33,8 @@ UPRIGHT = {"bed1": ("1, 0, 0", "1, 6, 6"), "bed2": ("0, 5, 0", "6, 5, 6"), "inne
 class Case:
     name: str
     sets: tuple
-    beyond: bool = False  # of what is asked: counted in rows of its own
-    wedged: bool = False  # perhaps no state is found: that is counted apart
+    beyond: bool = False  # outside the targets: counted in separate rows
+    wedged: bool = False  # perhaps without a solution: counted separately
     quick: bool = False
     quick_cells: str = "tetrahedra"
 
@@ -44,7 +44,7 @@ def rocks(entry, value):
 
 
 def stretched(factor):
-    """The scene with all z multiplied: cells of aspect ratio `factor` or its inverse; strains are the same."""
+    """Entries that multiply all z by `factor`, the aspect ratio of cells or its inverse; strains are unchanged."""
     entries = []
 
     def visit(element, path):
@@ -60,14 +60,15 @@ def stretched(factor):
 
 
 def columns():
-    """All fractures stand upright, and the sides move so that the columns between them slide along each other."""
+    """Entries that make all fractures vertical, and displacements of the sides that slide the columns between them
+    past each other."""
     corners = [f"Mesh.fractures.{name}.{corner} corner={{{at}}}" for name, ends in UPRIGHT.items() for corner, at in zip(("lower", "upper"), ends)]
     slide = "{xx(t)*(x - 3), yy(t)*(y - 3), zz(t)*(z - 3) + xz(t)*(x - 3) + yz(t)*(y - 3)}"
     return (*linear.table(**CLOSED, shear=0.11, xy=0), *corners, *(f"Boundary conditions.{side}.displacement={slide}" for side in SIDES))
 
 
 def found_no_state(run):
-    """In the time that a run has, or at all; what else may fail is no property of the scene."""
+    """True if no state was found within the time limit, or at all. Other failures are not due to the scene."""
     return run.failure.startswith("no end within") or (bool(run.failure) and run.failure == run.results.get("reason"))
 
 
@@ -81,7 +82,7 @@ def stiff(ratio):
 
 
 def springs(ratio):
-    """Normal and tangential stiffness; the closure is so large that the law is about linear."""
+    """Normal and tangential stiffness. The closure limit is so large that the law is almost linear."""
     return linear.joint(normal=ratio, stiffness=ratio, closure=1)
 
 
@@ -117,7 +118,7 @@ def cases():
 
 
 def draw(rows, file):
-    """Mean to largest count of each case, a mark for each kind of cells."""
+    """Draws mean to largest number of iterations of each case, with a mark for each cell shape."""
     import style
     names = list(dict.fromkeys((case.beyond, case.name) for case, *_ in rows))
     figure, ax = style.plt.subplots(figsize=(7, 0.8 + 0.165 * len(names)))

@@ -30,12 +30,14 @@ import great_cell  # noqa: E402
 import specimen  # noqa: E402
 
 SCENE = ROOT / "xml" / "point" / "injection_shear.xml"
-OUTLET = 5e6  # Pa; the table's effective stresses are 30 MPa + tau tan(30 deg) - (injection pressure + 5 MPa)/2
+OUTLET = 5e6  # Pa; effective stresses of the table: 30 MPa + tau tan(30 deg) - (injection pressure + 5 MPa)/2
 LAST_RISING = 5
-WORST_FIT = 0.1  # rms over the range
+WORST_FIT = 0.1  # allowed rms relative to the range
 RISING = slice(0, LAST_RISING + 1)
-LENGTHS = {"sw_s4": (0.1187, 0.74e-6), "sw_t2": (0.1327, 2.11e-6)}  # m: of the specimen; hydraulic aperture in the first stage
-FRICTION = {"friction coefficient": 0.5, "residual friction coefficient": 0.1, "weakening distance": 1e-4}  # of the scene
+# m: length of the specimen; hydraulic aperture in the first stage
+LENGTHS = {"sw_s4": (0.1187, 0.74e-6), "sw_t2": (0.1327, 2.11e-6)}
+# in the scene
+FRICTION = {"friction coefficient": 0.5, "residual friction coefficient": 0.1, "weakening distance": 1e-4}
 SPECIMENS = {
     "sw_s4": ({}, ["friction coefficient", "weakening distance", "Point.column tangential stiffness=1e10..1e12"]),
     "sw_t2": ({"Materials.saw cut.friction coefficient": 1.3, "Materials.saw cut.residual friction coefficient": 0.9},
@@ -44,7 +46,7 @@ SPECIMENS = {
 
 
 def overrides_of(columns, more):
-    """The stages of a table as a path of the point, from its first stage on."""
+    """Overrides of the scene: the stages of a table as a path of the point, beginning at the first stage."""
     normal, shear = -columns["effective normal stress"][0], columns["shear stress"][0]
     return [f"Tables.normal.values={{{', '.join(f'{v:.17g}' for v in normal)}}}",
             f"Point.initial traction={{{normal[0]:.17g}, {shear[0]:.17g}}}",
@@ -52,8 +54,10 @@ def overrides_of(columns, more):
 
 
 def flow_of(columns, slip):
-    """Q/(p_in - p_out) as the cube of an aperture that slip opens and the effective compression closes, both linearly,
-    with three coefficients fitted to the rising stages."""
+    """Flow rate by the cube of an aperture that increases with slip and decreases with effective compression, both
+    linearly.
+
+    The three coefficients are fitted to Q/(p_in - p_out) of the rising stages."""
     drop = columns["injection pressure"][0] - OUTLET
     measured = columns["flow rate"][0]
     stress = columns["effective normal stress"][0]
@@ -64,7 +68,8 @@ def flow_of(columns, slip):
 
 
 def in_units(columns, computed):
-    """(quantity, unit, measured, computed) of what was computed, in SI, by the names of columns."""
+    """Returns (quantity, unit, measured, computed) for computed SI values by column name. Columns without
+    measurements are skipped."""
     units = {"shear stress": ("MPa", 1e-6), "effective normal stress": ("MPa", 1e-6), "slip": ("um", 1e6),
              "normal displacement": ("um", 1e6), "flow rate": ("uL/min", 60e9)}
     return [(name, units[name][0], columns[name][0] * units[name][1], values * units[name][1]) for name, values in computed.items()
@@ -72,7 +77,7 @@ def in_units(columns, computed):
 
 
 def of_rock(name, columns, fitted, slip, options):
-    """What a specimen of rock does with what was fitted, and words."""
+    """Runs the specimen of rock with the fitted parameters; returns its results and texts."""
     length, hydraulic = LENGTHS[name]
     own = {**FRICTION, **{p.split(".")[-1]: value for p, value in SPECIMENS[name][0].items()}}
     one = specimen.Specimen(length, hydraulic, {entry: fitted.get(entry, value) for entry, value in own.items()},
@@ -91,7 +96,7 @@ def of_rock(name, columns, fitted, slip, options):
 
 
 def rows_of(name, options):
-    """{model: (quantity, unit, measured, computed)} of a specimen, and what was fitted."""
+    """Returns {model: (quantity, unit, measured, computed)} of a specimen, and texts on the fitted parameters."""
     path = HERE / f"{name}.csv"
     columns = read(path)
     more, texts = SPECIMENS[name]
@@ -113,7 +118,8 @@ def rows_of(name, options):
 
 
 def relative(measured, computed, rows):
-    """The largest and the root mean square difference over the range of what was measured, where it was."""
+    """Root mean square and largest difference, relative to the range of the measured values; rows without a
+    measurement are skipped."""
     known = rows & np.isfinite(measured)
     if not known.any():
         return np.nan, np.nan
@@ -136,7 +142,7 @@ def main():
 
 
 def injection_tests(options, names):
-    """Prints what was fitted and how far all is off; whether the rising stages are fitted at the point."""
+    """Prints fitted parameters and errors. Returns True if the point model fits all rising stages."""
     summary = []
     for name in names:
         models, told = rows_of(name, options)

@@ -1,7 +1,8 @@
-"""The GREAT cell of DECOVALEX-2023, Task G, in plane strain: the volumetric strain along a circle in the sample.
+"""GREAT cell of DECOVALEX-2023, Task G, in plane strain: volumetric strain along a circle in the sample.
 
-M1 is the intact sample, M2a has a fracture across it, M2b one of 40 mm from the centre. Pads press on the sheath, those across
-from each other with the same load; loads B and C are A turned by 45 and 90 degrees, while the fracture stays."""
+M1 is the intact sample, M2a has a through-going fracture, M2b a fracture of 40 mm from the centre. Pads press
+on the sheath; opposite pads have the same load. Loads B and C are load A rotated by 45 and 90 degrees, without
+rotation of the fracture."""
 import csv
 import subprocess
 import sys
@@ -15,30 +16,31 @@ sys.path.insert(0, str(ROOT / "apps/plot"))
 import read  # noqa: E402
 
 SCENE = ROOT / "xml/networks/great_cell_2d.xml"
-RADIUS = 0.065                  # m, of the circle
-SIZES = (0.004, 0.002)          # m, of cells
-LOADS = (10, 6.64, 4.46, 1.17, 1, 3.82, 7.8, 9.95)  # MPa, of pads 1 to 8 clockwise from the x axis, load A
-TURNS = {"A": 0, "B": 2, "C": 4}  # by so many pads
+RADIUS = 0.065                  # of the circle, m
+SIZES = (0.004, 0.002)          # of cells, m
+LOADS = (10, 6.64, 4.46, 1.17, 1, 3.82, 7.8, 9.95)  # MPa; pads 1 to 8 clockwise from the x axis, load A
+TURNS = {"A": 0, "B": 2, "C": 4}  # rotation in pads
 JOINT = "Materials.elastic joint"
 INTACT = {f"{JOINT}.tangential stiffness": "infinite", f"{JOINT}.normal stiffness": 1e17}
 CASES = {"M1": INTACT, "M2a": {}, "M2b": {"Mesh file.network.fractures.fracture.lines.line.points": "{0, 0, 0.04, 0}"}}
 ROCKS = {"greywacke": (26.87e9, 0.27, {}),  # Young's modulus, Poisson's ratio, entries
          "gneiss": (83.9e9, 0.21, {"Regions.sample.material": "gneiss", f"{JOINT}.normal stiffness": "200 GPa/m",
                                    f"{JOINT}.tangential stiffness": "100 GPa/m"})}
-# strain in 1e-4 of M1 under load A: LBNL, phase field in MOOSE, in external_data_dict.py of OpenGeoSys' benchmark
+# Strain in 1e-4 of M1 under load A: LBNL, phase field in MOOSE, in external_data_dict.py of OpenGeoSys'
+# benchmark.
 ANGLES = (0.0037, 13.08, 28.51, 46.81, 60.56, 75.32, 90.51, 99.49, 115.80, 131.28, 150.49)  # degrees
 KNOWN = {"greywacke": (-3.222, -3.309, -3.183, -2.754, -2.327, -1.901, -1.603, -1.547, -1.683, -2.018, -2.542),
          "gneiss": (-1.239, -1.272, -1.224, -1.059, -0.895, -0.731, -0.616, -0.595, -0.647, -0.776, -0.977)}
-WORST = 0.05  # of the largest known strain
+WORST = 0.05  # allowed error relative to the largest known strain
 
 
 def pads(load):
-    """The loads by multiples of 22.5 degrees, counter-clockwise, from -9 on, Pa."""
+    """Loads at multiples of 22.5 degrees, counter-clockwise, from -9 to 9, in Pa."""
     return "{" + ", ".join(f"{LOADS[(-k - TURNS[load]) % 8]}e6" for k in range(-9, 10)) + "}"
 
 
 def strains(directory, size, young, poisson):
-    """By ANGLES: the trace of the strain, of a linear function through the cells around on the same side of the fracture."""
+    """Volumetric strain at ANGLES, from a linear fit through the surrounding cells on the same side of the fracture."""
     grid = read.grid(read.written_steps(directory, "bulk")[-1][1])
     points = read.vtk_to_numpy(grid.GetPoints().GetData())
     centre = np.array([points[cell].mean(axis=0)[:2] for cell in read.cells(grid.GetCells())])
@@ -52,7 +54,7 @@ def strains(directory, size, young, poisson):
 
 
 def computed(options, rock, case, load, size):
-    """The strains in 1e-4."""
+    """Runs a case; returns the strains in 1e-4."""
     *elastic, entries = ROCKS[rock]
     directory = options.output / f"great_cell/{rock}_{case}_{load}_{1e3 * size:g}mm"
     directory.mkdir(parents=True, exist_ok=True)
@@ -68,7 +70,7 @@ def computed(options, rock, case, load, size):
 
 
 def run(options):
-    """Prints the strains and writes great_cell.csv; whether M1 is near to what is known."""
+    """Prints the strains and writes great_cell.csv. Returns True if M1 agrees with the known strains."""
     print("great_cell: volumetric strain in 1e-4 along the circle; finer: what cells of half the size change, of the largest, load A")
     print(f"{'degrees':22}" + "".join(f"{angle:8.1f}" for angle in ANGLES) + "   finer")
     columns, worst = {"angle (degree)": ANGLES}, 0

@@ -1,7 +1,8 @@
-"""An injection-shear test as a scene: a specimen of poroelastic rock with an inclined fracture between platens, in plane strain.
+"""Injection-shear test as a scene: a specimen of poroelastic rock with an inclined fracture between platens, in
+plane strain.
 
-The joint's friction and the stiffness of specimen and machine are those that were fitted at a point. What opens the joint for
-the fluid has three coefficients, fitted to the flow of the rising stages."""
+Friction of the joint and stiffness of specimen and machine are the values fitted at a point. The hydraulic
+opening of the joint has three coefficients, fitted to the flow of the rising stages."""
 import json
 import math
 import subprocess
@@ -13,24 +14,26 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENE = ROOT / "xml/poro/injection_shear_2d.xml"
-ANGLE = math.radians(30)       # of the fracture with the axis
-ROCK, POISSON = 67e9, 0.32     # Pa, -
+ANGLE = math.radians(30)       # between fracture and axis
+ROCK, POISSON = 67e9, 0.32     # Young's modulus, Pa; Poisson's ratio, -
 CONFINED = 30e6                # Pa
 MACHINE, WIDTH = 0.01, 0.0505  # m: height of the layer, width of the specimen
 STAGE = 600.0                  # s
-STIFF = 1e17                   # Pa/m: of joints that the effective stress does not close
+STIFF = 1e17                   # Pa/m; for joints without closure by effective stress
 
 
 @dataclass
 class Specimen:
     length: float             # m
-    hydraulic_aperture: float  # m, in the first stage: of the measured flow by the cubic law
+    hydraulic_aperture: float  # m, in the first stage: measured flow with the cubic law
     joint: dict               # entries of the joint
     stiffness: float          # Pa/m, of specimen and machine along the fracture
 
 
 def aperture(columns, slip, hydraulic, rising, outlet):
-    """(at no stress, m; its growth with slip, -; its loss with the effective stress, m/Pa), of the flow of the rising stages."""
+    """Returns (aperture at zero stress, m; its increase with slip, -; its decrease with effective stress, m/Pa).
+
+    The values are fitted to the flow of the rising stages."""
     stress = columns["effective normal stress"][0]
     root = np.cbrt(columns["flow rate"][0] / (columns["injection pressure"][0] - outlet))
     A = np.array([np.ones_like(slip), slip / np.max(slip), -stress / stress[0]]).T[rising]
@@ -39,8 +42,8 @@ def aperture(columns, slip, hydraulic, rising, outlet):
 
 
 def entries(specimen, shear, wide, dilation, closes):
-    """--set for the scene. `shear` is the shear stress of the first stage, `dilation` a tangent."""
-    axial = specimen.stiffness / (math.sin(ANGLE) * math.cos(ANGLE)**2)  # of specimen and machine, shortened along the axis
+    """Arguments --set of the scene. `shear` is the shear stress of the first stage, `dilation` a tangent."""
+    axial = specimen.stiffness / (math.sin(ANGLE) * math.cos(ANGLE)**2)  # axial stiffness of specimen and machine
     machine = 1 / (1 / axial - specimen.length * (1 - POISSON**2) / ROCK)
     rise = WIDTH / math.tan(ANGLE)
     low, top = (specimen.length - rise) / 2, specimen.length + MACHINE
@@ -60,7 +63,7 @@ def entries(specimen, shear, wide, dilation, closes):
 
 
 def run(binary, directory, words):
-    """{quantity: values at the ends of the stages} of the scene with these entries, with signs as in the tables."""
+    """Runs the scene; returns {quantity: values at the stage ends} with the signs of the tables."""
     directory.mkdir(parents=True, exist_ok=True)
     mesh = directory / "specimen.msh"
     for command in ([sys.executable, "-B", str(ROOT / "apps/mesh"), "--program", binary, str(SCENE), "-o", str(mesh), "--quiet", *words],

@@ -13,10 +13,10 @@ sys.path.append(str(ROOT / "perf/krylov"))
 import linear  # noqa: E402
 import numpy as np  # noqa: E402
 
-MESHES = {  # shape: scene, cells along an edge; some ten thousand, a hundred thousand and a million cells
+MESHES = {  # shape: scene, cells along an edge for about 1e4, 1e5 and 1e6 cells
     "triangles": ("flow_2d", "triangle", (72, 222, 708)), "quadrilaterals": ("flow_2d", "quadrilateral", (102, 318, 1002)),
     "tetrahedra": ("flow_3d", "tetrahedron", (12, 24, 54)), "hexahedra": ("flow_3d", "hexahedron", (24, 48, 102))}
-STEADY = ("Time.maximum halvings=0",)  # shorter steps change nothing
+STEADY = ("Time.maximum halvings=0",)  # shorter steps have no effect
 BOUNDS = {"krylov_max": 15, "krylov_growth": 0.3, "failures": 0, "exponent": 1.1}
 COLUMNS = {"cells, case": "", "cells": "d", "unknowns": "d", "solves": "d", "first": "d", "iterations": "d", "residual": ".0e",
            "set-up s": ".2f", "assembly s": ".2f", "solve s": ".2f", "kB/cell": ".1f"}
@@ -29,7 +29,7 @@ def joints(tangential, normal=None, which=("joint", "other joint")):
 
 
 def anisotropic(d):
-    """100 along the first axis turned by 30 degrees in the plane x, y, else 1."""
+    """Permeability 100 along the first axis, rotated by 30 degrees in the x-y plane, and 1 in the other directions."""
     c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
     xx, yy, xy = 99 * c * c + 1, 99 * s * s + 1, 99 * c * s
     value = ", ".join(f"{k:.17g}" for k in ((xx, yy, xy) if d == 2 else (xx, yy, 1, xy, 0, 0)))
@@ -40,7 +40,7 @@ def rocks(contrast):
     return (f"Materials.other rock.permeability={{{contrast:g}}}",)
 
 
-CASES = {  # entries of the dimension
+CASES = {  # functions of the dimension that return entries
     "alike": lambda d: joints(1),
     "open 1e5": lambda d: joints(1e5),
     "open 1e10": lambda d: joints(1e10),
@@ -79,12 +79,13 @@ class Row:
 
 
 def first_residual(run):
-    """Of the solve for the pressure; those that follow correct what rounding leaves."""
+    """Residual of the pressure solve; the later solves correct round-off."""
     return next((solve["residual"] for step in run.steps for solve in step["linear_solves"]), None)
 
 
 def growth(rows):
-    """Of the mean over what ran on the coarsest and the finest mesh, less 1."""
+    """Relative growth of the mean number of iterations from the coarsest to the finest level, over the series that
+    ran on both."""
     levels = sorted({row.level for row in rows})
     if len(levels) == 1:
         return float("nan")
@@ -94,7 +95,7 @@ def growth(rows):
 
 
 def exponent(rows):
-    """p of seconds ~ cells^p, fitted to all series at once, each with a factor of its own."""
+    """Exponent p of seconds ~ cells^p, fitted to all series, each with its own factor."""
     points = {}
     for row in rows:
         points.setdefault((row.mesh, row.case), []).append((np.log(row.cells), np.log(row.seconds)))
@@ -106,7 +107,7 @@ def exponent(rows):
 
 
 def draw(rows, file):
-    """Iterations and seconds against cells: a colour for each shape of cells, a line for each case."""
+    """Draws iterations and seconds against cells: a colour for each cell shape, a line for each case."""
     import style
     figure, both = style.plt.subplots(1, 2, figsize=(8, 3.4))
     for axes, (label, what) in zip(both, (("Krylov iterations (-)", lambda row: row.run.most), ("set-up, assembly and solution (s)", lambda row: row.seconds))):

@@ -17,13 +17,13 @@ import linear  # noqa: E402
 from scenes import Scene  # noqa: E402
 
 END = 20 * 3600.0  # s
-MOST = 25          # Newton iterations of a step
-CUTS = 0.1         # of a run, per step
-QUICK = {"failures": 0, "newton_median": 10, "newton_max": 100, "cuts": 4}  # where --quick printed 0, 8, 66, 1
+MOST = 25          # target: Newton iterations per step
+CUTS = 0.1         # target: bisections per step of a run
+QUICK = {"failures": 0, "newton_median": 10, "newton_max": 100, "cuts": 4}  # --quick printed 0, 8, 66, 1
 PERMEABILITIES = (1e-20, 1e-17, 1e-15)  # m^2
 JOINT = "Materials.rough joint."
-JOINTS = {"mated": (),                                # 0.4 mm wide where nothing presses it
-          "closed": (JOINT + "initial aperture=0",),  # but for its residual aperture
+JOINTS = {"mated": (),                                # 0.4 mm wide without load
+          "closed": (JOINT + "initial aperture=0",),  # except for the residual aperture
           "hard": (JOINT + "initial aperture=0", JOINT + "maximum closure=0")}
 RUNS = tuple((solver, steps) for solver in ("direct", "iterative") for steps in (10, 40))
 COLUMNS = {"scene": "", "solver": "", "steps": "d", "done": "d", "median": "g", "max": "d", "above": "d", "cuts": "d", "open": ".2f", "violation": ".0e", "seconds": ".1f"}
@@ -52,7 +52,8 @@ NETWORKS = {"three": ("injection_cross_2d", "{20, 20}"), "eleven": ("injection_2
 
 
 def cases():
-    """The least rate hardly opens a joint, the largest opens all of them by centimetres. m^2/s; 3D: m^3/s"""
+    """Yields the cases. The smallest rate barely opens a joint, the largest opens all by centimetres. m^2/s; 3D:
+    m^3/s."""
     for joint in JOINTS:
         for permeability in PERMEABILITIES:
             for rate in (6e-5, 2e-4, 5e-4):
@@ -65,7 +66,7 @@ def cases():
 
 
 def asked(run, steps):
-    """What is not as it is asked for, besides failures."""
+    """Yields messages of missed targets other than failures."""
     cuts = sum(step["cuts"] for step in run.steps)
     if cuts > CUTS * steps:
         yield f"{cuts} cuts in {steps} steps, asked is one in ten at most"

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import linear
 import numpy as np
 
-EDGES = (12, 18, 30, 42, 66)  # cells along an edge of the box: 11, 29, 111, 280 and 1001 thousand unknowns
-QUICK = {12: r"tetrahedra|stick", 18: r"stick"}  # and the series
-REFERENCE = 30                # growth is counted, and the exponent fitted, from here
+EDGES = (12, 18, 30, 42, 66)  # cells along a box edge: 11, 29, 111, 280 and 1001 thousand unknowns
+QUICK = {12: r"tetrahedra|stick", 18: r"stick"}  # edge: pattern of the series
+REFERENCE = 30                # first mesh for growth and exponent
 BOUNDS = {"max_krylov": 25, "growth": 0.3, "newton_growth": 0.3, "exponent": 1.1}
-QUICK_BOUNDS = {"max_krylov": 25, "growth": 0.3, "newton_growth": 0.3}  # of all meshes
-STATES = {  # which sides move how far, and the joint
+QUICK_BOUNDS = {"max_krylov": 25, "growth": 0.3, "newton_growth": 0.3}  # for all meshes
+STATES = {  # displacements of the sides, and the joint
     "stick": linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.002),
     "slip": linear.table(xx=-0.01, yy=-0.01, zz=-0.01, shear=0.06),
     "mixed": linear.table(xx=0.007, yy=-0.006, zz=-0.012, shear=0.012) + linear.joint(stiffness=1, dilation=2),
@@ -31,7 +31,7 @@ COLUMNS = {"cells, state": "", "edge": "d", "unknowns": "d", **{state: ".2f" for
 
 @dataclass
 class Row:
-    """A state on a mesh, with the own multigrid or another."""
+    """One state on one mesh, with Sprekk's multigrid or another one."""
     series: str
     edge: int
     other: str
@@ -52,14 +52,14 @@ class Row:
 
 
 def growth(rows, first, last, what):
-    """Of the mean over the series that ran on both meshes, from the first mesh to the last, less 1."""
+    """Relative growth of `what` from the first to the last mesh, averaged over the series that ran on both."""
     at = {edge: {row.series: what(row.run) for row in rows if row.edge == edge} for edge in (first, last)}
     both = at[first].keys() & at[last].keys()
     return sum(at[last][s] for s in both) / sum(at[first][s] for s in both) - 1 if both else math.nan
 
 
 def exponent(rows, first):
-    """p of seconds ~ unknowns^p, fitted to all series at once, each with a factor of its own."""
+    """Exponent p of seconds ~ unknowns^p, fitted to all series, each with its own factor."""
     points = {}
     for row in rows:
         if row.edge >= first and row.seconds > 0:
@@ -80,7 +80,8 @@ def summary(rows, quick):
 
 
 def ratios(rows, other):
-    """Of the other multigrid to the own one, for all of COMPARED: the geometric mean over what ran with both."""
+    """Ratios of the other multigrid to Sprekk's own for COMPARED: geometric means over the scenes that ran with
+    both."""
     own = {(row.series, row.edge): row.run for row in rows if not row.other}
     pairs = [(own[row.series, row.edge], row.run) for row in rows if row.other and (row.series, row.edge) in own]
     return {f"{other}_{what}": math.exp(np.mean([math.log(of(theirs) / of(ours)) for ours, theirs in pairs])) if pairs else math.nan
@@ -88,7 +89,8 @@ def ratios(rows, other):
 
 
 def draw(rows, file):
-    """Iterations and seconds against unknowns: a colour for each state, dashed for tetrahedra, dotted for another multigrid."""
+    """Draws iterations and seconds against unknowns: a colour for each state, dashed for tetrahedra, dotted for
+    another multigrid."""
     import style
     figure, axes = style.plt.subplots(1, 3, figsize=(10.5, 3.4))
     names, states = sorted({row.name for row in rows}), list(STATES)

@@ -1,4 +1,4 @@
-"""Runs a scene with the iterative solver, and reads from results.json what the linear solves took."""
+"""Runs a scene with the iterative solver and reads the counts and times of linear solves from results.json."""
 import argparse
 import csv
 import json
@@ -15,11 +15,11 @@ sys.path.append(str(ROOT / "apps/plot"))
 
 SCENE = "performance/blocks_3d.xml"
 SOLVER = "Solver.Linear solver"
-RESIDUAL = 1e-8  # relative, of every linear solve
-ROUNDING = 10    # the true residual may exceed the one that the Krylov method updates by this factor
+RESIDUAL = 1e-8  # relative tolerance of every linear solve
+ROUNDING = 10    # allowed ratio of the true residual to the residual updated by the Krylov method
 ALWAYS = (f"{SOLVER}.type=iterative", f"{SOLVER}.tolerance={RESIDUAL:g}", f"{SOLVER}.forcing=false")
 STATES = ("stick", "slip", "open")
-LISTED = 12  # names in a message
+LISTED = 12  # number of names in a message
 TIMERS = {"set-up": ("set-up_of_the_solver", "set-up_of_linear_solver"),
           "assembly": ("assembly_of_the_linear_part", "loads", "residual", "Jacobian", "local_elimination"),
           "solve": ("linear_solve",)}
@@ -27,7 +27,7 @@ TIMERS = {"set-up": ("set-up_of_the_solver", "set-up_of_linear_solver"),
 
 @dataclass
 class Run:
-    """A run that ended, or failed for a reason."""
+    """Results of a run; `failure` contains the reason if it failed."""
     results: dict
     failure: str = ""
 
@@ -37,13 +37,13 @@ class Run:
 
     @property
     def unknowns(self):
-        """Of the displacement."""
+        """Number of displacement unknowns."""
         fields = self.results.get("blocks", {}).get("fields", [])
         return next((f["unknowns"] for f in fields if f["name"] == "displacement"), 0)
 
     @property
     def newton(self):
-        """Iterations per step that was not cut; of all steps, if all were."""
+        """Mean number of iterations over the steps without bisection; over all steps if all were bisected."""
         uncut = [step for step in self.steps if step["cuts"] == 0] or self.steps
         return sum(step["newton_iterations"] for step in uncut) / max(1, len(uncut))
 
@@ -57,7 +57,7 @@ class Run:
 
     @property
     def krylov(self):
-        """Iterations of each linear solve; the mean of a step for each, where the step does not list them."""
+        """Iterations of each linear solve; the mean of the step if it does not list its solves."""
         counts = []
         for step in self.steps:
             solves = step["newton_iterations"]
@@ -75,26 +75,26 @@ class Run:
 
     @property
     def residual(self):
-        """The largest true relative residual of a linear solve that Newton's method used, or None where it is not told."""
+        """Largest true relative residual of the linear solves used by Newton's method; None if it is not recorded."""
         return max((solve["residual"] for solve in self.solves if solve["used"]), default=None)
 
     @property
     def most_used(self):
-        """The largest count of a linear solve that Newton's method used."""
+        """Largest number of iterations of a linear solve used by Newton's method."""
         return max((solve["iterations"] for solve in self.solves if solve["used"]), default=0)
 
     @property
     def most_given_up(self):
-        """The largest count of a linear solve in an attempt of Newton's method that failed."""
+        """Largest number of iterations of a linear solve in a failed attempt of Newton's method."""
         return max((solve["iterations"] for solve in self.solves if not solve["used"]), default=0)
 
     @property
     def lost(self):
-        """Linear solves that failed, in attempts of Newton's method that were given up."""
+        """Number of failed linear solves in abandoned attempts of Newton's method."""
         return sum(not solve["used"] and solve["residual"] > ROUNDING * RESIDUAL for solve in self.solves)
 
     def fraction(self, state):
-        """Of the area of all fractures, at the end."""
+        """Fraction of the area of all fractures in this contact state at the end."""
         fractures = self.steps[-1].get("fractures", {}).values() if self.steps else []
         return sum(f["area"] * f[f"fraction_{state}"] for f in fractures) / max(1e-300, sum(f["area"] for f in fractures))
 
@@ -104,20 +104,22 @@ class Run:
 
     @property
     def bytes(self):
-        """(of all ranks, of the rank that has most): the largest resident memory."""
+        """Peak resident memory: (all ranks, largest rank)."""
         memory = self.results.get("memory", {})
         return memory.get("peak_bytes_all_ranks", 0), memory.get("peak_bytes_largest_rank", 0)
 
 
 def run(options, sets, directory, ranks=1, time_limit=3600, scene=SCENE, residual=lambda run: run.residual):
-    """Runs the scene with these entries, then those of the command line. Never throws for what the program does. `residual` of a
-    run must be small enough."""
+    """Runs the scene with these entries, then those of the command line. A failed program is recorded in
+    `failure`, without exception.
+
+    residual(run) must be below the tolerance times ROUNDING."""
     directory = options.output / directory
     shutil.rmtree(directory, ignore_errors=True)
     done = started(["timeout", "--kill-after=5", str(time_limit), *on_ranks(ranks, command(options, sets, directory, scene))])
     file = directory / "results.json"
     found = Run(json.loads(file.read_text()) if file.is_file() else {})
-    if done.returncode in (124, 137, -9):  # timeout ends itself as it ended the program
+    if done.returncode in (124, 137, -9):  # timeout exits like the program it stopped
         found.failure = f"no end within {time_limit} s"
     elif done.returncode:
         words = [line for line in done.stderr.splitlines() if line.strip("- ")]
@@ -141,7 +143,8 @@ def started(command):
 
 
 def measured(options, scene, sets, ranks):
-    """What the program of a measurement prints of a scene with these entries, then those of the command line."""
+    """Returns the JSON output of a measurement program for a scene with these entries, then those of the command
+    line."""
     done = started(on_ranks(ranks, [str(options.program), str(ROOT / "xml" / scene), *sets, *options.set]))
     if done.returncode:
         sys.exit(done.stderr.strip())
@@ -149,7 +152,7 @@ def measured(options, scene, sets, ranks):
 
 
 def table(shear, **values):
-    """Entries that let the sides move so far; xy, xz, yz are `shear` unless given."""
+    """Entries for the displacements of the sides; xy, xz, yz are `shear` unless given."""
     return tuple(f"Tables.{name}.values={{0, {value}}}" for name, value in {"xy": shear, "xz": shear, "yz": shear, **values}.items())
 
 
@@ -164,7 +167,7 @@ def joint(**entries):
 
 
 def pattern(words):
-    """A regular expression, for an option."""
+    """Parses a regular expression of an option."""
     try:
         return re.compile(words).pattern
     except re.error as error:
@@ -172,14 +175,14 @@ def pattern(words):
 
 
 def count(words):
-    """A number of ranks or cells, for an option."""
+    """Parses a number of ranks or cells of an option."""
     if not words.isdecimal() or int(words) < 1:
         raise argparse.ArgumentTypeError(f'"{words}" is no whole number from 1 on')
     return int(words)
 
 
 def matching(options, rows, name=str):
-    """The rows whose name matches --only; without any the program ends as for any wrong option."""
+    """Returns the rows whose name matches --only. Without a match the program exits with a usage error."""
     found = [row for row in rows if re.search(options.only, name(row))]
     if not found:
         names = [f'"{each}"' for each in dict.fromkeys(map(name, rows))]
@@ -193,7 +196,8 @@ def add_only(parser, what="rows"):
 
 
 def parser(name, text, program=False, only=True):
-    """The options that all programs have; --program instead of --binary where the measurement has a program of its own."""
+    """Returns the common options of all measurements; --program replaces --binary if the measurement has a program
+    of its own."""
     made = argparse.ArgumentParser(prog=f"sprekk perf {name}", description=text)
     made.add_argument("--quick", action="store_true", help="a small version, for a test; the status is 1 if a bound on counts is missed")
     if only:
@@ -208,7 +212,7 @@ def parser(name, text, program=False, only=True):
 
 
 class Table:
-    """Rows as they come, for the screen and for a CSV."""
+    """Rows printed as they are added, and written to a CSV file."""
 
     def __init__(self, columns, width=34):
         self.columns, self.width, self.rows = columns, width, []  # columns: {name: format}
@@ -230,5 +234,5 @@ class Table:
 
 
 def missed(values, bounds):
-    """In words, which values are above their bounds."""
+    """Returns a message for each value above its bound."""
     return [f"missed: {name} = {values[name]:.3g}, the bound is {bound:g}" for name, bound in bounds.items() if not values[name] <= bound]

@@ -1,7 +1,7 @@
-// laws SCENE [PATH=VALUE...]: what a step of a point in 3D costs at the beginning of its path and at the end, in
-// seconds of the processor, and how often it evaluates the law, as JSON. A time step is a 64th of a turn of the path.
-// Early and late turns alternate, so that both see the same machine, and each early way begins with another turn of the
-// path, for a way that is gone again and again is foreseen by the processor.
+// laws SCENE [PATH=VALUE...]: prints the cost of a step of a 3D point at the beginning and the end of its path as
+// JSON, in CPU seconds and law evaluations per step. A turn of the path has 64 steps. Early and late turns
+// alternate, so that both run under the same machine load. Each early path begins with another turn, because the
+// branch predictor learns repeated paths.
 #include "model/point_driver.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr int unmeasured = 10, turn = 64, rounds = 400;
 
-/// Of the steps of a turn, one value a turn.
+/// Cost per step, one value per turn.
 struct Cost {
   std::vector<Real> seconds, evaluations;
 
@@ -28,11 +28,13 @@ struct Cost {
   }
 };
 
-/// A point on its way, step by step.
+/// Point that advances along its path step by step.
 class Way {
  public:
   Way(const model::PointScene& scene, const model::PointPath& path, long begin)
-      : driver_(path, scene.materials.at(path.material)), step_(scene.time.end / scene.time.steps.value_or(1)), done_(begin) {}
+      : driver_(path, scene.materials.at(path.material)),
+        step_(scene.time.end / scene.time.steps.value_or(1)),
+        done_(begin) {}
   void go(int steps) {
     for (int k = 0; k < steps; ++k, ++done_) driver_.advance(done_ * step_, (done_ + 1) * step_);
   }

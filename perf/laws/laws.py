@@ -17,18 +17,18 @@ import contact  # noqa: E402
 import linear  # noqa: E402
 
 specification = importlib.util.spec_from_file_location("network_runs", ROOT / "perf/networks/networks.py")
-network_runs = importlib.util.module_from_spec(specification)  # perf/contact has another module networks
+network_runs = importlib.util.module_from_spec(specification)  # perf/contact has another module named networks
 specification.loader.exec_module(network_runs)
 
-BOUNDS = {"newton_median": 6, "newton_max": 15, "worst_violation": 1e-8}  # what --quick as a test demands
+BOUNDS = {"newton_median": 6, "newton_max": 15, "worst_violation": 1e-8}  # limits of --quick when it serves as a test
 ASKED = {**BOUNDS, "cost": 1.3, "growth": 0.02}
 KEPT = "elastic-plastic jump: kept by laws"
 COLUMNS = {"law, network": "s", "faces": "d", "steps": "d", "median": ".1f", "max": "d", "cuts": "d", "violation": ".0e", "cost": ".2f",
            "bytes/face": "d", "history +-": ".1e"}
-PARTS = ("set-up", "assembly", "solve")  # of the time of a step
+PARTS = ("set-up", "assembly", "solve")  # parts of the time of a step
 TURNS, TURN = "point/damage_turns.xml", 64  # steps
 LATE = 10_000
-TIME_LIMIT = 300  # seconds of the processor, of one run; what takes longer has failed
+TIME_LIMIT = 300  # CPU seconds per run; longer runs count as failed
 
 STIFF = {"tangential stiffness": "50 GPa/m"}
 CLOSES = {**STIFF, "maximum closure": "0.2 mm", "normal stiffness": "50 GPa/m"}
@@ -53,18 +53,18 @@ LAWS = {
 @dataclass
 class Measured:
     run: object
-    seconds: float = 0  # of the processor, of a step
+    seconds: float = 0  # CPU seconds per step
 
     @property
     def history(self):
-        """(bytes per face, bound of the error of a history)"""
+        """(bytes of history per face, error bound of a history)."""
         blocks, mesh = self.run.results.get("blocks", {}), self.run.results.get("mesh", {})
         kept = sum(h["bytes"] for h in blocks.get("histories", []) if h["name"] == KEPT)
         return kept // max(1, mesh.get("fracture_faces", 1)), max(self.run.results.get("error_bounds", {}).values(), default=None)
 
 
 def scene_with(network, law, directory):
-    """The scene of the network with the joint of this law."""
+    """Writes a copy of the network's scene with the joint of this law; returns its path."""
     source = network_runs.scene_of(network)
     tree = xml.parse(source)
     joint = tree.getroot().find("./ParameterList[@name='Materials']/ParameterList[@name='joint']")
@@ -80,7 +80,7 @@ def scene_with(network, law, directory):
 
 
 def measured(options, network, mesh, law):
-    """One law on one network."""
+    """Runs one law on one network and checks the state against the law."""
     scene = scene_with(network, law, mesh.parent)
     run = network_runs.start(options, replace(network, name=f"{law}, {network.name}", file=str(scene)), mesh, 1, directory=law.replace(" ", "_"))
     timing, steps = run.results.get("timing", {}), max(1, len(run.steps))
@@ -102,8 +102,10 @@ def add_row(table, name, found, cost):
 
 
 def growth(options):
-    """By which part a step with anisotropic damage costs more after LATE steps than in the second turn, at a point. In the first
-    steps there are fewer directions, and steps cost less."""
+    """Relative increase of the cost per step with anisotropic damage at a point, from the second turn to LATE
+    steps.
+
+    The first turn is no reference: its few stored directions make steps less expensive."""
     told = linear.measured(options, TURNS, (f"Time.end={LATE / TURN}", f"Time.steps={LATE}"), 1)
     print("\nanisotropic damage at a point, a path that turns; microseconds of the processor and evaluations of a step:\n" +
           "\n".join(f"  {words:<28}{1e6 * told[turn]['seconds']:6.2f}{told[turn]['evaluations']:7.2f}" for turn, words in (

@@ -1,5 +1,4 @@
-// meshing SCENE [PATH=VALUE...]: makes the scene's mesh, and nothing else, and prints sizes, seconds and memory as
-// JSON.
+// meshing SCENE [PATH=VALUE...]: makes only the mesh of the scene, and prints sizes, seconds and memory as JSON.
 #include "base/timer.hpp"
 #include "mesh/distribute.hpp"
 #include "perf/program.hpp"
@@ -9,7 +8,7 @@ namespace {
 using namespace sprekk;
 using perf::json, perf::time_of;
 
-/// A number of each rank. Collective.
+/// Gathers a number of each rank on all ranks. Collective.
 std::vector<Real> of_ranks(const Comm& comm, Real here) {
   std::vector<Real> all(comm.getSize());
   Teuchos::gatherAll(comm, 1, &here, comm.getSize(), all.data());

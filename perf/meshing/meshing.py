@@ -22,7 +22,8 @@ def run(options, edge, refinements, ranks):
 
 
 def row(name, found):
-    """Memory is the peak of a process less what it holds before there is a mesh; the cells of a rank include ghosts."""
+    """Table row. Memory is the peak of a process minus its memory before the mesh; the cells of a rank include
+    ghosts."""
     extra = [1e-6 * (peak - before) for peak, before in zip(found["peak_bytes"], found["peak_bytes_before"])]
     most = int(max(found["local_cells"]))
     seconds = found["seconds_to_distribute"] + found["seconds_to_refine"]

@@ -1,4 +1,4 @@
-"""Damage of a joint at a point: the tractions of both programs on the same path of jumps, and what a step costs late."""
+"""Damage of a joint at a point: tractions of both programs on the same path of jumps, and the cost of late steps."""
 import csv
 import io
 import subprocess
@@ -7,17 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-import linear  # of perf/krylov
+import linear  # in perf/krylov
 
 SCENE = Path(__file__).resolve().parent / "damage.xml"
 STEPS = 16
-SOME = 4          # steps at the beginning and the end, whose costs are compared
+SOME = 4          # steps at the beginning and at the end whose costs are compared
 COLUMNS = {"apart": "", "normal": ".0e", "shear": ".0e", "slip": ".0e", "first steps": ".3f", "last steps": ".3f"}
-WITHIN = 1e-9     # of the largest, that tractions and slips may be apart
+WITHIN = 1e-9     # allowed difference of tractions and slips, relative to the largest
 
 
 def entries(told, dim):
-    """Of the jumps of PorePy's run, with the normal component first: entries of the scene."""
+    """Scene entries for the jumps of PorePy's run, with the normal component first."""
     jumps = np.array(told["path"])[[1, 0, 2][:dim]]
     times = ", ".join(map(str, range(jumps.shape[1])))
     sets = [f"Tables.jump{i}.{what}={{{values}}}" for i, row in enumerate(jumps)
@@ -26,7 +26,7 @@ def entries(told, dim):
 
 
 def ours(options, dim, kind, told):
-    """{quantity: values of all steps}"""
+    """Runs Sprekk; returns {quantity: values of all steps}."""
     sets = [f"Materials.joint.damage={kind}", f"Time.end={STEPS}", f"Time.steps={STEPS}", *entries(told, dim)]
     done = subprocess.run([str(options.binary), "point", str(SCENE), *(word for entry in sets for word in ("--set", entry))],
                           capture_output=True, text=True)
@@ -41,7 +41,7 @@ def ours(options, dim, kind, told):
 
 
 def compare(options, theirs):
-    """Prints a row for each kind of damage; which are further apart than they may be, in words."""
+    """Prints a row for each kind of damage; returns messages of too large differences."""
     table, wrong = linear.Table(COLUMNS, 24), []
     for dim in (2, 3):
         for kind in ("isotropic", "anisotropic"):

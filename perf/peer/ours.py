@@ -1,4 +1,4 @@
-"""Runs of Sprekk: the tilted fracture and the crack of perf/verification, what they cost and how far off they are."""
+"""Runs of Sprekk with costs and errors: tilted fracture, THM block, flow, and the cracks of perf/verification."""
 import json
 import math
 import os
@@ -21,16 +21,17 @@ import meshes  # noqa: E402
 import read  # noqa: E402
 from runs import FUNCTIONALS, THERMAL, Run  # noqa: E402
 
-COUNTED = ("mesh", "set-up", "set-up_of_the_solver", "time_steps")  # phases that follow each other
+COUNTED = ("mesh", "set-up", "set-up_of_the_solver", "time_steps")  # consecutive phases
 MEAN = "mean pressure"
 REPEATED = 3  # short runs: the median counts
 TILTED, THM = (Path(__file__).resolve().parent / scene for scene in ("tilted.xml", "thm.xml"))
-HEAT_OF_WATER, HOT, COLD = 4.2e6, 420, 360  # of THM: J/(m^3 K), K
+HEAT_OF_WATER, HOT, COLD = 4.2e6, 420, 360  # of the THM case: J/(m^3 K), K
 MODES = {"opening": ("sneddon", exact.Crack(1, 1e-3, 1, 0.25)), "sliding": ("sneddon_shear", exact.Crack(2, 1e-3, 1, 0.25))}
 
 
 def run(options, scene, sets, name):
-    """(directory, results.json, processor seconds): of the phases that count, of an adaptive run of the whole process."""
+    """Returns (directory, results.json, median CPU seconds): of the COUNTED phases, for adaptive runs of the whole
+    process."""
     directory, seconds = options.output / name, []
     command = [str(options.binary), "run", str(scene), "--output", str(directory)]
     command += [word for entry in (*sets, *options.set) for word in ("--set", entry)]
@@ -49,7 +50,7 @@ def run(options, scene, sets, name):
 
 
 def to(quantity, error):
-    """Entries of a run that is to reach this relative error of the crack's, on cells of order 2."""
+    """Entries of an adaptive run to this relative error of the crack's quantity, with cells of order 2."""
     goal = "Accuracy.quantities.crack"
     return (f"{goal}.quantity={quantity}", f"{goal}.fractures={{crack}}", f"{goal}.relative={error:g}", "Mesh file.order=2")
 
@@ -75,14 +76,16 @@ def thm(options, file, name):
     _, results, seconds = run(options, THM, (f"Mesh file.path={file.resolve()}",), name)
     step = results["steps"][-1]
     crack, force, leaves = step["fractures"]["crack"], step["reactions"]["top"], -step["inflows"]["east"]
-    heat = HEAT_OF_WATER * (HOT - COLD) * leaves - step["heat_inflows"]["east"]  # heat_inflows: beyond what it carries at HOT
+    # heat_inflows does not include heat carried at HOT
+    heat = HEAT_OF_WATER * (HOT - COLD) * leaves - step["heat_inflows"]["east"]
     values = (1e3 * crack["max_slip"], 1e3 * crack["mean_slip"], 1e3 * crack["mean_opening"], 1e-6 * crack["mean_traction"]["local"][0],
               1e-6 * crack["mean_fracture_pressure"], crack["mean_fracture_temperature"], 1e-3 * heat, 1e-9 * force[0], 1e-9 * force[2])
     return made(results, seconds, values=dict(zip(THERMAL, values)))
 
 
 def crack(options, mode, file, name, *sets):
-    """With the relative error of the jump, of all faces and of those that end more than a tenth of the half-length from a tip."""
+    """Run with the relative errors of the jump: over all faces, and over faces at least a tenth of the half-length
+    away from tips."""
     scene, known = MODES[mode]
     directory, results, seconds = run(options, ROOT / f"xml/verification/{scene}.xml", (f"Mesh file.path={file.resolve()}", *sets), name)
     faces = read.segments(read.grid(read.written_steps(directory, "fractures")[-1][1]))
@@ -94,7 +97,7 @@ def crack(options, mode, file, name, *sets):
 
 
 def flow(options, kind, cell, n):
-    """With the mean pressure in the rock of the regular network, n cells along an edge, all of one size."""
+    """Run with the mean pressure in the rock of the regular network, with n equal cells along an edge."""
     sets = (f"Mesh.cell={cell}", f"Mesh.cells={{{n}, {n}}}", *flow_cases.JOINTS[kind])
     directory, results, seconds = run(options, ROOT / "xml/verification/flow_regular_2d.xml", sets, f"flow_{kind}_{cell}_{n}")
     rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
@@ -102,7 +105,7 @@ def flow(options, kind, cell, n):
 
 
 def tilted_mesh(folder, h, smallest, growth):
-    """Tetrahedra of the block: edges of `smallest` at the front of the fracture, growing by `growth` per length to h."""
+    """Tetrahedral mesh of the block. Edges grow from `smallest` at the fracture front by `growth` per length to h."""
     c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
     along, normal = f"({c:.9g}*(x-0.5)-{s:g}*(z-0.5))", f"({s:g}*(x-0.5)+{c:.9g}*(z-0.5))"
     script = f"""SetFactory("OpenCASCADE");

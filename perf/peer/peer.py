@@ -21,18 +21,22 @@ import runs  # noqa: E402
 from ours import meshes  # noqa: E402
 from runs import FUNCTIONALS, THERMAL, Run  # noqa: E402
 
-TILTED = ((0.25, 0.15), (0.22, 0.14), (0.125, 0.08), (0.09, 0.058))  # sizes of cells, those on the fracture
-HEAT = ((23.0, 14.5), (13.5, 8.7), (9.4, 6.0))  # the same of thm.xml
-FINE = ((0.5, 0.1, 0.5), (0.4, 0.06, 0.5), (0.3, 0.04, 0.5), (0.25, 0.025, 0.5), (0.2, 0.015, 0.4))  # ours alone: meshes of ours.tilted_mesh
-CRACK = (0.1, 0.05, 0.025, 0.0125, 0.00625)      # sizes on the crack, theirs
-REQUESTS = {"tilted": (0.3, 0.1, 0.03), "crack": (0.03, 0.01, 0.003, 0.0005)}  # relative errors that adaptive runs are to reach, from the coarsest mesh on
-GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))  # as `graded` of perf/verification, order 2
+TILTED = ((0.25, 0.15), (0.22, 0.14), (0.125, 0.08), (0.09, 0.058))  # sizes of cells, and of those on the fracture
+HEAT = ((23.0, 14.5), (13.5, 8.7), (9.4, 6.0))  # sizes for thm.xml
+# Sprekk alone: arguments of ours.tilted_mesh
+FINE = ((0.5, 0.1, 0.5), (0.4, 0.06, 0.5), (0.3, 0.04, 0.5), (0.25, 0.025, 0.5), (0.2, 0.015, 0.4))
+CRACK = (0.1, 0.05, 0.025, 0.0125, 0.00625)      # PorePy: sizes on the crack
+# relative errors requested from adaptive runs, beginning with the coarsest mesh
+REQUESTS = {"tilted": (0.3, 0.1, 0.03), "crack": (0.03, 0.01, 0.003, 0.0005)}
+# as `graded` of perf/verification, order 2
+GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))
 FLOW = {"PorePy": (0.1, 0.05, 0.025, 0.0125), "Sprekk": (16, 32, 64, 128)}  # sizes of cells; cells along an edge
 SIDES = (("west", "east"), ("south", "north"), ("bottom", "top"))
 PARTS = ("contact", "heat", "flow", "damage")
 RATIOS = {"tilted": "ratio", "heat": "ratio_thm"}
-QUICK = 2  # meshes of each
-ASKED = {"ratio_4k": 100, "ratio_11k": 300, "ratio_thm_4k": 50, "ratio_equal_error": 50}  # 4, 11 thousand tetrahedra: how many gmsh makes depends on the machine
+QUICK = 2  # number of meshes of each
+# 4, 11 thousand tetrahedra: the number made by gmsh depends on the machine
+ASKED = {"ratio_4k": 100, "ratio_11k": 300, "ratio_thm_4k": 50, "ratio_equal_error": 50}
 SLIP = "slip mean"
 COSTS = {"cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB": ".0f"}
 COLUMNS = {"mesh, code": "", **COSTS, **{name: ".4f" for name in FUNCTIONALS}}
@@ -43,7 +47,7 @@ WHY = """peer: nothing to compare with: POREPY is to name a checkout of PorePy, 
 
 
 def theirs(options, script, *words):
-    """What a run of PorePy tells."""
+    """Runs a script with PorePy; returns its JSON output and a function values -> Run."""
     paths = [HERE / "theirs/compat", f"{options.porepy}/src", *glob.glob("/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")]
     one = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "PYTHONDONTWRITEBYTECODE")}
     environment = {**os.environ, **one, "PYTHONPATH": ":".join(map(str, paths)), "MPLBACKEND": "Agg", "PYTHONWARNINGS": "ignore",
@@ -57,7 +61,7 @@ def theirs(options, script, *words):
 
 
 def flat(functionals):
-    """Components x and z of vectors: the mesh is as good as symmetric in y."""
+    """Components x and z of vectors; the mesh is almost symmetric in y."""
     found = {}
     for name, value in functionals.items():
         short = {"integral of traction": "traction", "mean jump": "jump"}.get(name, name)
@@ -66,7 +70,7 @@ def flat(functionals):
 
 
 def named(source, target):
-    """The mesh that PorePy made, with names of ours for the fracture and for the sides of the block, which has a corner at 0."""
+    """Writes PorePy's mesh with Sprekk's names for the fracture and the sides of the block, which has a corner at 0."""
     text = source.read_text()
     entities = text[text.index("$Entities"):text.index("$EndEntities")].splitlines()[1:]
     points, curves, surfaces, _ = map(int, entities[0].split())
@@ -89,7 +93,7 @@ def cells(run):
 
 
 def compare_tilted(options, count):
-    """{series: [run]} on the meshes of PorePy."""
+    """Runs both programs on the meshes of PorePy; returns the table and {series: [run]}."""
     table, found = linear.Table(COLUMNS, 26), {"PorePy": [], "Sprekk": [], "Sprekk, plain tips": []}
     for h, on_crack in TILTED[:count]:
         made = options.output / f"porepy_{h:g}.msh"
@@ -104,7 +108,7 @@ def compare_tilted(options, count):
 
 
 def compare_heat(options, count):
-    """As compare_tilted(), of the block with heat and flow."""
+    """Runs both programs on PorePy's meshes of the block with heat and flow; returns {series: [run]}."""
     table, found = linear.Table(OF_HEAT, 26), {"PorePy": [], "Sprekk": []}
     for h, on_crack in HEAT[:count]:
         made = options.output / f"porepy_thm_{h:g}.msh"
@@ -117,7 +121,10 @@ def compare_heat(options, count):
 
 
 def compare_errors(options, same, count):
-    """{what: ([their run], [our run], error)}: of the mean slip, and of the jump of the crack; for each also of our adaptive runs."""
+    """Runs for the errors of the mean slip and of the crack's jump.
+
+    Returns {quantity: ([PorePy run], [Sprekk run], error)}, the same with adaptive runs of Sprekk, and the
+    extrapolated mean slip."""
     table, found = linear.Table(ERRORS, 46), {}
     fine = [ours.tilted(options, ours.tilted_mesh(options.output / "meshes", *sizes), f"fine_{k}", "Mesh file.order=2")
             for k, sizes in enumerate(FINE[:count + 1])]
@@ -146,8 +153,11 @@ def compare_errors(options, same, count):
 
 
 def compare_flow(options, count):
-    """As compare_errors(): of the mean pressure of the regular network, each scheme of theirs beside one of ours. The value without
-    error is extrapolated from the last two meshes of Sprekk."""
+    """Runs for the error of the mean pressure in the regular network: each scheme of PorePy compared with one of
+    Sprekk.
+
+    Returns a dictionary as compare_errors(). The reference value is extrapolated from the last two meshes of
+    Sprekk."""
     table, found = linear.Table(ERRORS, 46), {}
     for kind in ("conductive", "blocking"):
         for scheme, cell in (("mpfa", "triangle"), ("tpfa", "quadrilateral")):
@@ -165,7 +175,7 @@ def compare_flow(options, count):
 
 
 def tell_apart(found):
-    """Prints how far the programs are apart; what is further than it may be, in words."""
+    """Prints the differences between the programs; returns messages of too large differences."""
     apart, wrong = runs.apart(found["Sprekk"], found["PorePy"]), []
     table = linear.Table({"apart (distances from the limit)": "", **{name: ".2f" for name in apart[0]}}, 36)
     for run, of in zip(found["Sprekk"], apart):
@@ -176,7 +186,7 @@ def tell_apart(found):
 
 
 def tell_equal(found):
-    """Prints seconds at equal error; the smallest ratio."""
+    """Prints the times at equal error; returns the smallest ratio."""
     table, ratios = linear.Table({"at equal error": "", "their error": ".2e", "our error": ".2e", "their CPU seconds": ".3f", "our CPU seconds": ".3f", "ratio": ".0f"}, 28), []
     for what, (their, our, error) in found.items():
         best, good = runs.at_equal_error(our, their, error)
@@ -213,7 +223,7 @@ def write(file, both, found):
 
 
 def warm_up(options):
-    """numba compiles into its cache."""
+    """Runs two small cases so that numba compiles into its cache."""
     theirs(options, "crack.py", "opening", 0.5, (options.output / "porepy_crack.msh").resolve())
     theirs(options, "tilted.py", 0.5, 0.3, (options.output / "porepy_first.msh").resolve())
 
@@ -223,7 +233,7 @@ def meshes_of(options, all_of_them):
 
 
 def ratios(options, name, of):
-    """{name_4k: time of PorePy over that of Sprekk} of all meshes."""
+    """Returns {name_4k: time of PorePy over time of Sprekk} for all meshes."""
     return {f"{name}_{their.cells}" if options.quick else f"{name}_{their.cells / 1e3:.0f}k": runs.ratio(their, our)
             for their, our in zip(of["PorePy"], of["Sprekk"])}
 

@@ -1,10 +1,11 @@
-"""A run of either program, and the judgement of both."""
+"""Run of either program, and functions that compare runs."""
 import math
 from dataclasses import dataclass, field
 
 FUNCTIONALS = ("slip max", "slip mean", "t_n mean", "traction x", "traction z", "jump x", "jump z", "reaction x", "reaction z")
-THERMAL = ("slip max", "slip mean", "opening", "t_n mean", "p mean", "T mean", "heat", "reaction x", "reaction z")  # mm, MPa, K, kW, GN
-WITHIN = 3  # times the distance of a value from its limit, by which the two programs may differ
+# mm, MPa, K, kW, GN
+THERMAL = ("slip max", "slip mean", "opening", "t_n mean", "p mean", "T mean", "heat", "reaction x", "reaction z")
+WITHIN = 3  # allowed difference of the programs, in distances of a value from its limit
 
 
 @dataclass
@@ -13,19 +14,21 @@ class Run:
     cells: int
     unknowns: int
     newton: int
-    seconds: float  # of the processor
-    bytes: float    # most memory of the process
+    seconds: float  # CPU seconds
+    bytes: float    # peak memory of the process
     values: dict = field(default_factory=dict)
 
 
 def limit(coarse, fine, name):
-    """By Richardson's extrapolation from the last two meshes, with an error ~ cells^(-1/3): the singular front leaves order 1."""
+    """Richardson extrapolation from two meshes with an error ~ cells^(-1/3): the singular front reduces the order
+    to 1."""
     ratio = (fine.cells / coarse.cells)**(1 / 3)
     return fine.values[name] + (fine.values[name] - coarse.values[name]) / (ratio - 1)
 
 
 def apart(ours, theirs):
-    """[mesh]{functional: difference of the programs on a mesh over the larger distance of their values from their own limits}."""
+    """[mesh]{functional: difference of the programs on a mesh, over the larger distance of their values from their
+    own limits}."""
     def distance(runs, k, name):
         return abs(runs[k].values[name] - limit(*runs[-2:], name))
     return [{name: abs(ours[k].values[name] - theirs[k].values[name]) / max(distance(ours, k, name), distance(theirs, k, name))
@@ -33,7 +36,8 @@ def apart(ours, theirs):
 
 
 def cheapest(runs, error, most):
-    """Of runs on ever finer meshes the first from which on no error is above `most`; None if the last one's is."""
+    """Returns the first run, from coarse to fine, such that its error and all later errors are at most `most`;
+    None if the last error is larger."""
     good = None
     for run in reversed(runs):
         if error(run) > most:
@@ -43,7 +47,7 @@ def cheapest(runs, error, most):
 
 
 def at_equal_error(ours, theirs, error):
-    """(their most accurate run, our cheapest that is not worse)."""
+    """Returns (most accurate run of PorePy, least expensive run of Sprekk with at most this error)."""
     best = min(theirs, key=error)
     return best, cheapest(ours, error, error(best))
 

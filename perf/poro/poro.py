@@ -16,19 +16,20 @@ import numpy as np  # noqa: E402
 SCENE = "poro/injection_3d.xml"
 @dataclass
 class Study:
-    """What is measured of the scene: cases, and the entries of each; on which meshes, with which bounds."""
+    """Definition of a measurement: cases with their entries, meshes (`levels`) and bounds."""
     name: str
     text: str
     cases: list
-    quick: tuple       # of the cases
-    entries: callable  # of a case
+    quick: tuple       # cases of --quick
+    entries: callable  # function of a case
     bounds: dict
     levels: dict
 
 
-RATE, VOLUME = 5e-3 / 6, 9.0  # m^3/s and m^3, the most that is injected in all steps together
-TIGHT = 1e-19  # m^2: what leaks off within a step, which coarse meshes underestimate, matters little for fractures
-LEVELS = {"tetrahedra": ("tetrahedron", (10, 20, 30)), "hexahedra": ("hexahedron", (10, 20, 40))}  # cells along an edge; multiples of 10 fit the fractures
+RATE, VOLUME = 5e-3 / 6, 9.0  # m^3/s; m^3, the largest volume injected in all steps
+TIGHT = 1e-19  # m^2: leak-off within a step, underestimated by coarse meshes, hardly affects fractures
+# cells along an edge; multiples of 10 fit the fractures
+LEVELS = {"tetrahedra": ("tetrahedron", (10, 20, 30)), "hexahedra": ("hexahedron", (10, 20, 40))}
 CASES = {"alike": ()}
 CASES.update({f"permeability {k:g}": (f"Materials.granite.permeability={{{k:g}}}",) for k in (1e-20, 1e-17, 1e-15, 1e-10)})
 CASES.update({f"step {dt:g} s": dt for dt in (1.0, 60.0, 1e6, 1e9)})
@@ -41,7 +42,7 @@ COLUMNS = {"cells, case": "", "cells": "d", "unknowns": "d", "slip": ".2f", "ope
 
 
 def entries(case):
-    """Three steps of the same length; in long ones less is injected per time."""
+    """Entries of three steps of equal length; long steps have a smaller rate."""
     given = CASES[case]
     step = given if isinstance(given, float) else 3600.0
     steps = (f"Time.end={3 * step:.17g}", "Time.steps=3", f"Flow.Wells.injector.rate={min(RATE, VOLUME / (3 * step)):.17g}", "Output.vtu=false",
@@ -58,14 +59,14 @@ class Row:
 
     @property
     def unknowns(self):
-        """Of the linear system."""
+        """Number of unknowns of the linear system."""
         blocks = self.run.results["blocks"]
         eliminated = {name for group in blocks.get("local_groups", []) for name in group["blocks"]}
         return sum(field["unknowns"] for field in blocks["fields"] if field["name"] not in eliminated)
 
     @property
     def newton(self):
-        """The most of a step; per substep of one that was cut."""
+        """Largest number of Newton iterations of a step; of a bisected step, per substep."""
         return max((step["newton_iterations"] / (step["substeps"] if step["cuts"] else 1) for step in self.run.steps), default=0)
 
     @property
@@ -79,7 +80,7 @@ class Row:
 
 
 def growth(rows, what):
-    """Of the mean from the coarsest to the finest of those meshes that all have run, less 1."""
+    """Relative growth of the mean from the coarsest to the finest level, over the meshes that ran on both."""
     levels = sorted({row.level for row in rows})
     if len(levels) < 2:
         return float("nan")
@@ -89,7 +90,7 @@ def growth(rows, what):
 
 
 def exponent(rows):
-    """p of seconds per Newton iteration ~ unknowns^p, fitted to all shapes at once, each with a factor of its own."""
+    """Exponent p of seconds per Newton iteration ~ unknowns^p, fitted to all cell shapes, each with its own factor."""
     points = {}
     for row in rows:
         points.setdefault(row.mesh, []).append((np.log(row.unknowns), np.log(row.seconds / len(row.run.krylov))))
@@ -101,7 +102,7 @@ def exponent(rows):
 
 
 def draw(study, rows, file):
-    """Iterations and seconds of the series of meshes against unknowns."""
+    """Draws iterations and seconds of the mesh series against unknowns."""
     import style
     figure, three = style.plt.subplots(1, 3, figsize=(10, 3.2))
     for axes, (label, what) in zip(three, (("Krylov iterations, most (-)", lambda row: row.run.most_used), ("Newton iterations, most of a step (-)", lambda row: row.newton),
@@ -117,7 +118,8 @@ def draw(study, rows, file):
 
 
 def measure(study, words):
-    """Runs all cases on the coarsest meshes and the series of meshes, and prints; the exit status."""
+    """Runs all cases on the coarsest meshes and the series of meshes, and prints the results; returns the exit
+    status."""
     parser = linear.parser(study.name, study.text)
     parser.add_argument("--meshes", type=int, choices=(1, 2, 3), default=3, help="meshes in the series of each type of cells (3)")
     options = parser.parse_args(words)

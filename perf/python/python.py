@@ -24,7 +24,7 @@ WAYS = {"sprekk run": None, "model.run(output)": RUN + "model.run(output=sys.arg
 
 
 def seconds(options, way, steps):
-    """Of the processor."""
+    """CPU seconds of a run."""
     script, folder = WAYS[way], options.output / "run"
     entries = [f"Time.end={steps}", f"Time.steps={steps}", "Output.vtu=false"]
     if script:
@@ -49,7 +49,7 @@ def main(words=None):
     options.output.mkdir(parents=True, exist_ok=True)
     costs = {way: [[], []] for way in WAYS}
     for _ in range(options.repeat):
-        for way in WAYS:  # by turns: what else the machine does counts for all
+        for way in WAYS:  # in turns: other load of the machine affects all
             for times, steps in zip(costs[way], (1, options.steps)):
                 times.append(seconds(options, way, steps))
     own = {way: min(many) - min(one) for way, (one, many) in costs.items()}

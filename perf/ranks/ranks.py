@@ -18,8 +18,8 @@ import scale  # noqa: E402
 from krylov import STATES  # noqa: E402
 
 STATE = "mixed"
-STEPS = 2   # of a network: one compresses, one shears
-TIMES = 3   # each timed run, by turns: what else a machine does makes single ones slower, the first ones most of all
+STEPS = 2   # steps of a network: one of compression, one of shear
+TIMES = 3   # repetitions of each timed run, in turns: other load slows single runs, mostly the first
 KINDS = ("blocks", "network")
 BOUNDS = {"speedup2": 1.8, "growth16": 0.2, "growth64": 0.2}
 COLUMNS = {"scene, ranks": "", "size": "d", "unknowns": "d", "per rank": "d", "Newton": ".4g", "mean": ".1f", "max": ".4g", "residual": ".0e", "halo kB": ".1f", "messages": "d",
@@ -29,9 +29,9 @@ COLUMNS = {"scene, ranks": "", "size": "d", "unknowns": "d", "per rank": "d", "N
 
 @dataclass
 class Case:
-    """A run: blocks with so many cells along an edge of the box, or a network of so many fractures."""
+    """Run of blocks with `size` cells along an edge of the box, or of a network with `size` fractures."""
     series: str  # timed | strong | weak
-    kind: str    # of KINDS
+    kind: str    # one of KINDS
     size: int
     ranks: int
 
@@ -44,7 +44,7 @@ class Case:
         return f"{self.series}_{self.kind}_{self.size}_{self.ranks}"
 
     def scene(self, options):
-        """The scene of a run and its entries; makes the mesh of a network where there is none yet."""
+        """Returns the scene of a run and its entries; makes the mesh of a network if it does not exist."""
         if self.kind == "blocks":
             return linear.SCENE, (*linear.cells(self.size), "Mesh.cell=tetrahedron", *STATES[STATE])
         network = scale.Scale(self.size, 3)
@@ -66,7 +66,8 @@ def cases(options):
         return [Case("strong", "blocks", 12, ranks) for ranks in (1, 2)] + [Case("strong", "network", 12, ranks) for ranks in (1, 2)]
     timed = [Case("timed", kind, size, ranks) for _ in range(TIMES) for kind, size in (("blocks", options.edge), ("network", options.fractures)) for ranks in (1, 2)]
     strong = [Case("strong", kind, size, ranks) for kind, size in (("blocks", 18), ("network", 50)) for ranks in (1, 2, 4, 8, 16)]
-    weak = [("blocks", ((12, 4), (18, 11), (24, 23), (36, 64))), ("network", ((16, 4), (64, 16), (256, 64)))]  # 2700 displacement unknowns per rank
+    # 2700 displacement unknowns per rank
+    weak = [("blocks", ((12, 4), (18, 11), (24, 23), (36, 64))), ("network", ((16, 4), (64, 16), (256, 64)))]
     return timed + strong + [Case("weak", kind, size, ranks) for kind, of in weak for size, ranks in of]
 
 
@@ -81,12 +82,13 @@ class Row:
 
     @property
     def halo(self):
-        """Bytes that all ranks receive when every field is exchanged once."""
+        """Bytes received by all ranks when every field is exchanged once."""
         return self.of_fields("halo_bytes")
 
     @property
     def cycle(self):
-        """Of the V-cycle of displacements: levels, unknowns of the last one, and of the rank that has most matrices, messages and their bytes."""
+        """Properties of the displacement V-cycle: levels and their unknowns and ranks, messages and bytes of the
+        largest rank."""
         return next((part for part in self.run.results["solver"].get("parts", []) if "levels" in part), {})
 
     def of_fields(self, what):
@@ -102,24 +104,26 @@ class Row:
 
 @dataclass
 class Machine:
-    """Of a cluster with many cores a node, what one core has of it."""
+    """Resources of one core in a cluster node with many cores."""
     memory: float = 4e9    # byte/s
-    latency: float = 2e-6  # s, of a message, and of each of the log2(P) steps of a sum over ranks
+    latency: float = 2e-6  # s, per message, and per each of the log2(P) steps of a reduction
     network: float = 5e8   # byte/s
     direct: float = 2e9    # flop/s with factors
 
 
-UNKNOWNS = 5e4  # of a rank
+UNKNOWNS = 5e4  # per rank
 
 
 def model(rows, unknowns=UNKNOWNS, machine=Machine()):
-    """Seconds of a Krylov iteration by what they are for, on 10^2 to 10^5 ranks with so many unknowns each: counts of the largest run of the weak
-    series, per unknown or, of halos, per unknown^(2/3); the last level grows with the ranks, of which each keeps a node, and one rank solves it
-    with factors of a space-filling graph, 30 n^(4/3) numbers."""
+    """Yields (ranks, {part: seconds of a Krylov iteration}) for 10^2 to 10^5 ranks with `unknowns` unknowns each.
+
+    Counts are those of the largest run of the weak series, per unknown, or for halos per unknown^(2/3). The
+    last level grows with the number of ranks: each contributes one node. One rank solves it with factors of a
+    space-filling graph, 30 n^(4/3) numbers."""
     row = max((row for row in rows if row.case.series == "weak" and row.cycle), key=lambda row: row.case.ranks)
     cycle, own, most = row.cycle, row.run.unknowns / row.case.ranks, row.case.ranks
     more, levels = unknowns / own, cycle["levels"]
-    matrix = 8 * 45  # bytes per unknown: a product with the matrix
+    matrix = 8 * 45  # bytes per unknown of a matrix-vector product
     for ranks in (100, 1000, 10000, 100000):
         deeper = levels + math.log(more * ranks / most, 20)
         last = cycle["unknowns_of_levels"][-1] / most * ranks
@@ -139,7 +143,7 @@ def predict(kind, rows):
 
 
 def summary(rows, most):
-    """Of blocks or of networks. What is missing is not a number."""
+    """Summary of blocks or networks; missing values are NaN."""
     by = {(row.case.series, row.case.ranks): row for row in rows}
     one, many = by.get(("strong", 1)), by.get(("strong", most))
     weak = sorted((row for row in rows if row.case.series == "weak"), key=lambda row: row.case.ranks)
@@ -177,7 +181,7 @@ def draw(rows, file):
 
 
 def print_commands(options, chosen):
-    """Makes meshes that are not there yet, and prints how each run is started."""
+    """Makes missing meshes and prints the command of each run."""
     for case in {case.directory: case for case in chosen}.values():
         scene, sets = case.scene(options)
         print(f"# {case.name}\n{shlex.join(linear.on_ranks(case.ranks, linear.command(options, sets, options.output / case.directory, scene)))}")

@@ -18,11 +18,11 @@ import numpy as np  # noqa: E402
 import read  # noqa: E402
 from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 
-SHARES = (1, 2, 4, 8, 16)  # of the end, in 16ths: when states are compared
+SHARES = (1, 2, 4, 8, 16)  # times of comparison, in 16ths of the end time
 TOLERANCES = (3e-2, 1e-2, 3e-3)
-COUNTS = (16, 32, 64, 128, 256, 512, 1024)  # of equal steps
+COUNTS = (16, 32, 64, 128, 256, 512, 1024)  # numbers of equal steps
 BOUNDS = {"worst_miss": 3, "cost": 0.7}
-QUICK_COST = 1  # of Newton iterations, at the largest tolerance
+QUICK_COST = 1  # in Newton iterations, at the largest tolerance
 TIME_LIMIT = 3600
 
 
@@ -33,11 +33,11 @@ class Case:
     fields: tuple
     end: float
     sets: tuple = ()
-    edits: tuple = ()       # (pattern, text) in the scene
-    start: dict = field(default_factory=dict)  # values that changes count from
-    reference: int = 4096   # equal steps
+    edits: tuple = ()       # (pattern, text) replaced in the scene
+    start: dict = field(default_factory=dict)  # reference values subtracted from fields
+    reference: int = 4096   # number of equal steps
     counts: tuple = COUNTS
-    quick: tuple = ()       # further entries of coarse meshes
+    quick: tuple = ()       # additional entries of coarse meshes
 
 
 CIRCLE = "{0.3*min(t, 1)*cos(pi*max(t - 1, 0)), 0.3*min(t, 1)*sin(pi*max(t - 1, 0)), -0.1}"
@@ -75,7 +75,7 @@ class Run:
 
 
 def states(directory, case):
-    """Fields at the times that are compared."""
+    """Reads the fields at the times of comparison."""
     found = {name: {} for name in case.fields}
     for kind in ("bulk", "fractures"):
         for t, file in read.written_steps(directory, kind):
@@ -91,7 +91,7 @@ def states(directory, case):
 
 
 def run(options, case, time, sets, name):
-    """Runs a case with other time steps; `time`: entries of Time, as XML."""
+    """Runs a case with other time steps; `time` contains XML entries of the section Time."""
     text = (ROOT / "xml" / case.scene).read_text()
     for pattern, replacement in case.edits:
         text = re.sub(pattern, replacement, text)
@@ -127,7 +127,8 @@ def chosen(options, case, tolerance):
 
 
 def error(found, reference):
-    """The largest of all fields and times: the root mean square over cells or faces, relative to the largest value of the reference at any of the times."""
+    """Largest error over fields and times: the root mean square over cells or faces, relative to the largest value
+    of the reference."""
     worst = 0.0
     for name, exact in reference.states.items():
         size = max(np.sqrt((values**2).sum(axis=1)).max() for values in exact.values())
@@ -138,7 +139,10 @@ def error(found, reference):
 
 
 def at_error(wanted, runs):
-    """(steps, Newton iterations, CPU seconds) of equal steps with that error, between those that were run: log by log. Beyond the finest of them, the last two go on, at least as if errors shrank like steps."""
+    """(steps, Newton iterations, CPU seconds) of equal steps with the error `wanted`, by log-log interpolation
+    between runs.
+
+    Beyond the finest run the last two are extrapolated, with at least first order."""
     below = [k for k, (e, _) in enumerate(runs) if e <= wanted]
     k = below[0] if below else len(runs) - 1
     numbers = [np.array([run.steps, run.newton, run.cpu]) for _, run in runs]
@@ -146,7 +150,7 @@ def at_error(wanted, runs):
         return numbers[0]
     (coarse, _), (fine, _) = runs[k - 1], runs[k]
     if not below:
-        fine = min(fine, coarse / 2)  # what tables' corners leave does not shrink in every one
+        fine = min(fine, coarse / 2)  # corners of tables can prevent a decrease between two runs
     s = np.log(coarse / wanted) / np.log(coarse / max(fine, 1e-300))
     return numbers[k - 1] ** (1 - s) * numbers[k] ** s
 

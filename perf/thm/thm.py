@@ -9,7 +9,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "poro"))
 
 import poro  # noqa: E402
 
-HOT, COLD = 420, 320       # K, of the rock and of what is injected
+HOT, COLD = 420, 320       # K, of the rock and the injected water
 HEAT_OF_FLUID = 4.2e6      # J/(m^3 K)
 LENGTH = 100.0             # m, of the fractures
 CONDUCTIVITY = 2.8         # W/(m K)
@@ -23,7 +23,8 @@ QUICK = ("alike", "permeability 1e-20", "step 1e+09 s", "Peclet 0.001")
 
 
 def entries(case):
-    """Those of poromechanics with heat; of a Peclet number rho c Q / (lambda L) the conductivity lambda of the rock."""
+    """Entries of poromechanics with heat. A Peclet number rho c Q / (lambda L) determines the conductivity lambda
+    of the rock."""
     if case not in PECLET:
         return *poro.entries(case), *HEAT
     conductivity = HEAT_OF_FLUID * poro.RATE / (PECLET[case] * LENGTH)

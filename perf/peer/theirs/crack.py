@@ -1,7 +1,9 @@
-"""PorePy on a straight crack that opens or slides in an infinite plane: crack.py opening|sliding SIZE_ON_CRACK MESH_FILE
+"""PorePy on a straight crack that opens or slides in an infinite plane: crack.py opening|sliding SIZE_ON_CRACK
+MESH_FILE
 
-The box [-2, 2]^2 and what is known are those of `sneddon` and `sneddon_shear` of perf/verification: the exact displacement is
-prescribed on the box; that of the uniform stress, which there is an initial stress or a pressure in the crack, is added to it. One step."""
+The box [-2, 2]^2 and the exact solutions are those of `sneddon` and `sneddon_shear` of perf/verification. The
+exact displacement is prescribed on the box, plus the displacement of the uniform stress, which replaces the
+initial stress or the pressure in the crack. One step."""
 import sys
 from pathlib import Path
 
@@ -13,7 +15,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "verification"))
 
 from exact import Crack  # noqa: E402
 
-G, NU, FRICTION, COARSER = 1, 0.25, 0.5, 8  # COARSER: cells on the box than on the crack
+G, NU, FRICTION, COARSER = 1, 0.25, 0.5, 8  # COARSER: ratio of cell sizes on the box and on the crack
 KNOWN = {"opening": Crack(1, 1e-3, G, NU, uniform=(0, 1e-3, 0)),
          "sliding": Crack(2, 1e-3, G, NU, uniform=(0, -1e-3, 1.5e-3))}
 
@@ -37,8 +39,9 @@ class Model(measured.Counted, pp.MomentumBalance):
 
 
 def errors(model, mode):
-    """Relative error of the jump in L2 over the crack, against exact means of cells: of all, and of those that end more than a
-    tenth of the half-length from a tip."""
+    """Relative L2 errors of the jump against exact means of cells.
+
+    They are computed over all cells, and over cells at least a tenth of the half-length away from tips."""
     crack = model.mdg.subdomains(dim=1)[0]
     jump = measured.vectors(model, model.displacement_jump([crack]))
     ends = np.sort(crack.nodes[0][crack.cell_nodes().indices.reshape(-1, 2)], axis=1)

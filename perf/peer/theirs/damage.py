@@ -1,7 +1,8 @@
-"""PorePy's damage of a fracture on a path of jumps: damage.py DIM isotropic|anisotropic STEPS
+"""PorePy's fracture damage on a path of jumps: damage.py DIM isotropic|anisotropic STEPS
 
-Contact alone, with the jumps of path() given. The material is that of PorePy's own example, but for damage of both, stiffnesses a
-million times larger, without which its convergence test does not see tractions, and more friction: else slip would gain work."""
+The model contains contact only, with the jumps of path(). The material is that of PorePy's example, with three
+changes: damage of both friction and dilation; stiffnesses a million times larger, because the convergence test
+otherwise ignores tractions; and more friction, because slip would otherwise produce energy."""
 import sys
 
 import measured
@@ -16,15 +17,18 @@ SOLID = {**example.solid_params, "fracture_normal_stiffness": 1e3, "fracture_tan
 
 
 def path(dim, steps):
-    """[component, step] of the upper side, from rest: to and fro on one side, in 3D loops in one quadrant. There the history of a
-    step on the side of the present jump is the same by its own sum and by that of Sprekk."""
+    """[component, step] Displacement of the upper side from rest: cyclic in one direction, in 3D loops in one
+    quadrant.
+
+    For these paths the history of a step in the direction of the present jump is the same in PorePy and Sprekk."""
     t = np.arange(steps + 1) / 16
-    sway = np.where(t > 0, 0.02, 0) + 0.1 * (1 - np.cos(np.pi * np.outer([2, 3], t)))  # back at 0 there is no direction
+    # never back at 0, where the direction is undefined
+    sway = np.where(t > 0, 0.02, 0) + 0.1 * (1 - np.cos(np.pi * np.outer([2, 3], t)))
     return np.array([sway[0], np.full_like(t, 0.1), sway[1]][:dim])
 
 
 class Kept(measured.Counted):
-    """Keeps what there is after every step."""
+    """Model that records the state after every step."""
 
     def collect_data(self):
         fracture = self.mdg.subdomains(dim=self.nd - 1)

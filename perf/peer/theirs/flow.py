@@ -9,7 +9,7 @@ from porepy.examples import flow_benchmark_2d_case_1 as benchmark
 
 
 class Model(measured.Counted, benchmark.FlowBenchmark2dCase1Model):
-    """Beside the model of PorePy: what is counted."""
+    """PorePy's model with counters."""
 
 
 def make(kind, scheme, size, file):

@@ -1,4 +1,4 @@
-"""What the runs of PorePy have in common: what is counted, and the line of JSON that they print."""
+"""Common parts of the runs of PorePy: counters, and the line of JSON that they print."""
 import json
 import os
 import resource
@@ -9,7 +9,7 @@ import porepy as pp
 
 
 class Counted:
-    """Counts processor seconds of the parts of a run, linear solves, and the size of the matrix; the first base of a model."""
+    """Counter of CPU seconds by part, linear solves and matrix size; must be the first base class of a model."""
 
     def __init__(self, params):
         super().__init__(params)
@@ -37,7 +37,7 @@ class Counted:
 
 
 def run(make, coarse, size):
-    """Runs make(coarse), to load and compile what is needed, then make(size); returns that model."""
+    """Runs make(coarse), which loads and compiles all code, then make(size); returns the second model."""
     for model in (make(coarse), make(size)):
         model.count("all", lambda model=model: pp.run_time_dependent_model(model, model.params))
     return model
@@ -48,7 +48,7 @@ def evaluate(model, operator):
 
 
 def vectors(model, operator):
-    """[cell, component]"""
+    """Values of an operator, [cell, component]."""
     return evaluate(model, operator).reshape(-1, model.nd)
 
 
@@ -65,7 +65,7 @@ def parameters(meshing, solid, fluid=None, **more):
 
 
 def tell(model, **values):
-    """Prints what was measured; the mesh, which is the same for both programs or made beforehand, does not count."""
+    """Prints the measured values. The mesh does not count: both programs use the same one, or it was made before."""
     seconds = model.seconds
     print(json.dumps({"cpu_seconds": seconds["all"] - seconds["mesh"], "parts": seconds, "solves": model.solves,
                       "unknowns": model.size[0], "entries": model.size[1], "cells": model.mdg.subdomains(dim=model.nd)[0].num_cells,

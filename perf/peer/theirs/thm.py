@@ -1,7 +1,8 @@
-"""PorePy on a hot block with a tilted fracture that cold water flows through: thm.py SIZE SIZE_ON_FRACTURE MESH_FILE
+"""PorePy on a hot block with a tilted fracture through which cold water flows: thm.py SIZE SIZE_ON_FRACTURE
+MESH_FILE
 
-Its model of thermo-poromechanics, with the cubic law for the fracture. All of the scene is below and in ../thm.xml. Rock is closed
-at x = 0 and x = 100 m, where the fracture ends; two steps."""
+The model is PorePy's thermo-poromechanics with the cubic law in the fracture. The scene is described below and
+in ../thm.xml. The rock is closed at x = 0 and x = 100 m, where the fracture ends. Two steps."""
 import sys
 from pathlib import Path
 
@@ -17,14 +18,14 @@ SOLID = {"shear_modulus": 16e9, "lame_lambda": 16e9, "biot_coefficient": 0.7, "p
 WATER = {"name": "water", "density": 1000, "viscosity": 1e-3, "compressibility": 4.5e-10, "thermal_expansion": 5e-4,
          "specific_heat_capacity": 4200, "thermal_conductivity": 0.6, "normal_thermal_conductivity": 0.6}
 STEP, STEPS = 2e7, 2  # s
-UNITS = {"kg": 1e9, "K": 100}  # so that unknowns are of like sizes
+UNITS = {"kg": 1e9, "K": 100}  # units for unknowns of similar size
 
 
 class Model(Block, pp.constitutive_laws.CubicLawPermeability, pp.Thermoporomechanics):
     side, half_length, half_width, moved = 100.0, 50 / np.cos(DIP), 25, (0.015, 0, -0.03)
 
     def solid_thermal_expansion_coefficient(self, subdomains):
-        """Volumetric: it is what grains in the walls of pores do."""
+        """Volumetric coefficient of the solid, from the linear one."""
         return pp.ad.Scalar(3) * super().solid_thermal_expansion_coefficient(subdomains)
 
     def bc_type_of_flows(self, sd):
@@ -47,7 +48,7 @@ class Model(Block, pp.constitutive_laws.CubicLawPermeability, pp.Thermoporomecha
 
 
 def in_fracture(model):
-    """In mm, MPa, K, GN, and kW of what leaves the fracture beyond the heat with which it came in."""
+    """Functionals in mm, MPa, K, GN; heat in kW: outflow from the fracture in excess of the inflow."""
     crack = model.mdg.subdomains(dim=2)
     area = crack[0].cell_volumes / crack[0].cell_volumes.sum()
 

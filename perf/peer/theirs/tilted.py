@@ -1,7 +1,8 @@
 """PorePy on a block with a tilted fracture that slips: tilted.py SIZE SIZE_ON_FRACTURE MESH_FILE
 
-Unit cube, E = 1, Poisson's ratio 0.25; a square of side 0.5 around the centre, inclined by 30 degrees; the bottom is fixed, the
-top moves by (0.005, 0, -0.01), the sides are free; friction 0.5. One step."""
+Unit cube with E = 1 and Poisson's ratio 0.25. The fracture is a square of side 0.5 at the centre, inclined by
+30 degrees, with friction 0.5. The bottom is fixed, the top moves by (0.005, 0, -0.01), the sides are free. One
+step."""
 import sys
 from pathlib import Path
 
@@ -13,7 +14,7 @@ FRICTION, DIP = 0.5, np.radians(-30)
 
 
 class Block(measured.Counted):
-    """A cube with an inclined rectangle around its centre, fixed at its bottom; its top moves after the start."""
+    """Cube with an inclined rectangular fracture at its centre, fixed at its bottom; the top moves after the start."""
     side, half_length, half_width, moved = 1.0, 0.25, 0.25, (0.005, 0, -0.01)
 
     def set_domain(self):
@@ -39,11 +40,11 @@ class Block(measured.Counted):
 
 
 class Model(Block, pp.MomentumBalance):
-    """Rock, contact and friction alone."""
+    """Model of rock with contact and friction."""
 
 
 def functionals(model):
-    """Slip, normal traction, and in the axes of the block integral of traction, mean jump and force on the top."""
+    """Slip and normal traction; in the axes of the block, integral of traction, mean jump and force on the top."""
     rock, crack = model.mdg.subdomains(dim=3)[0], model.mdg.subdomains(dim=2)[0]
     scale = float(measured.evaluate(model, model.characteristic_contact_traction([crack])))
     traction, jump = scale * measured.vectors(model, model.contact_traction([crack])), measured.vectors(model, model.displacement_jump([crack]))

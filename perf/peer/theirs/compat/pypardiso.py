@@ -1,5 +1,6 @@
-"""Stands in for pypardiso, PorePy's first choice of a direct solver, which Debian does not have: MUMPS by way of PETSc, with two
-steps of refinement (ICNTL(10))."""
+"""Replacement of pypardiso, PorePy's preferred direct solver, which Debian does not have.
+
+It calls MUMPS through PETSc, with two steps of iterative refinement (ICNTL(10))."""
 import gc
 
 import petsc4py
@@ -22,7 +23,7 @@ def spsolve(matrix, right):
     factors.setFactorSolverType("mumps")
     factors.setFactorSetUpSolverType()
     mumps = factors.getFactorMatrix()
-    mumps.setMumpsIcntl(14, 80)  # per cent of memory more than estimated
+    mumps.setMumpsIcntl(14, 80)  # memory margin over the estimate, per cent
     mumps.setMumpsIcntl(10, 2)
     x, b = A.createVecRight(), PETSc.Vec().createWithArray(right.astype(float), comm=PETSc.COMM_SELF)
     solver.solve(b, x)

@@ -1,4 +1,4 @@
-"""Lets PorePy of November 2025 run with the older numba 0.56, NumPy 1.24 and SciPy 1.10 of Debian 12."""
+"""Adapts PorePy of November 2025 to the older numba 0.56, NumPy 1.24 and SciPy 1.10 of Debian 12."""
 import inspect
 
 import numba
@@ -9,7 +9,7 @@ import scipy.sparse._data
 
 
 def indexed(function):
-    """numba 0.56 does not know array[:, None]."""
+    """Replaces array[:, None], which numba 0.56 does not support. Returns (function, whether it was changed)."""
     if getattr(function, "__name__", "") != "_unique_points_in_cluster":
         return function, False
     source = inspect.getsource(function)
@@ -19,7 +19,7 @@ def indexed(function):
 
 
 def serial(compiler):
-    """Without parallel=True, which fails with NumPy 1.24."""
+    """Removes parallel=True, which fails with NumPy 1.24."""
     def wrapped(*arguments, **options):
         options.pop("parallel", None)
         if arguments and callable(arguments[0]):
@@ -34,7 +34,7 @@ def serial(compiler):
 
 
 def by_axis(matrix):
-    """count_nonzero of a sparse matrix with an axis."""
+    """Adds count_nonzero with an axis to a sparse matrix class."""
     plain = matrix.count_nonzero
 
     def count_nonzero(self, axis=None):
