@@ -9,13 +9,13 @@ with R of a cell d(V (phi + c (p - p_i)) e d)/dt - V beta dT/dt and of a face d(
 Here V is the volume change due to the displacement of the rock surfaces; e and d are the density factors for
 pressure and temperature. Rates are those of implicit Euler or BDF2. For energy:
 
-    sum_K (C V dT/dt + c T_K R_K) + sum_F (C_F A (d(m T)/dt - T dm/dt) + c T_F R_F) = heat_inflows + c sum_b Q_b T_b + heat of
-    wells + c sum (sources) T
+    sum_K (C V dT/dt + c T_K R_K) + sum_F (C_F A (d(m T)/dt - T dm/dt) + c T_F R_F)
+        = heat_inflows + c sum_b Q_b T_b + heat of wells + c sum (sources) T
 
 with the heat capacity c of the fluid. Temperatures are relative to a temperature of the scene, so that the
-fluid balance times a temperature cannot hide an error. The files do not contain to which of its two cells a
-fracture face displaces fluid by its bubble deformation. With a Biot coefficient above 0, the difference in heat
-is bounded, and this bound is subtracted."""
+fluid balance times a temperature cannot hide an error. The files do not state which of its two cells receives
+the fluid that a fracture face displaces by its bubble deformation. With a Biot coefficient above 0, the
+difference in heat is bounded, and this bound is subtracted."""
 from dataclasses import dataclass, field
 
 import numpy as np

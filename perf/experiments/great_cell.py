@@ -1,8 +1,8 @@
 """GREAT cell of DECOVALEX-2023, Task G, in plane strain: volumetric strain along a circle in the sample.
 
-M1 is the intact sample, M2a has a through-going fracture, M2b a fracture of 40 mm from the centre. Pads press
-on the sheath; opposite pads have the same load. Loads B and C are load A rotated by 45 and 90 degrees, without
-rotation of the fracture."""
+M1 is the intact sample, M2a has a through-going fracture, M2b a fracture that extends 40 mm from the centre.
+Pads press on the sheath; opposite pads have the same load. Loads B and C are load A rotated by 45 and 90
+degrees, without rotation of the fracture."""
 import csv
 import subprocess
 import sys

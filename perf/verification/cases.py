@@ -270,7 +270,7 @@ def wavy():
                 "contact": abs((b - a)[pressure > 0].sum() / known.half_width - 1)}
 
     def prescribed(points):
-        """Counts x components at the nodes of both sides and y components at the nodes of the lower end."""
+        """Counts x components at the nodes of the lateral sides and y components at the nodes of the lower end."""
         x, y = points.T
         return int((np.abs(x) < 1e-9).sum() + (np.abs(x - 0.5) < 1e-9).sum() + (np.abs(y + 2) < 1e-9).sum())
     sizes = [(f"h={h:g}", lambda folder, h=h: meshes.wavy(folder, h)) for h in (0.05, 0.025, 0.0125, 0.00625)]

@@ -18,8 +18,8 @@ def lame(G, nu):
 class Crack:
     """Straight crack of half-length 1 at the origin of the plane, rotated by `angle` (degrees).
 
-    `drop` is the released normal (mode 1: pressure) or shear (mode 2) stress s. Westergaard functions: Z = s
-    (z/r - 1), its integral s (r - z), r = sqrt(z^2 - 1), z = x + iy; mode 1 after Sneddon (1946)."""
+    `drop` is the released normal (mode 1: pressure) or shear (mode 2) stress s. Westergaard functions:
+    Z = s (z/r - 1), its integral s (r - z), r = sqrt(z^2 - 1), z = x + iy; mode 1 after Sneddon (1946)."""
 
     def __init__(self, mode, drop, G, nu, angle=0, uniform=(0, 0, 0), traction=(0, 0)):
         """`uniform`: stress XX, YY, XY whose displacement is added. `traction`: (normal, tangential) traction on
@@ -88,10 +88,10 @@ class Penny:
 class Manufactured:
     """Manufactured solution in the unit square or cube with the fracture x_d = 1/2 and normal e_d.
 
-    u = w0 + h c on side -, plus J = j + h (a, b) on side +, with h = x_d - 1/2. c is chosen such that sigma(w)
-    n = (lambda_t, -N) on the fracture; a = -grad j_n and b = -lam/(lam + 2G) div j_t give equal tractions on
-    both sides. Derivatives use complex steps. In the regime "uniform" all faces slide under a uniform traction,
-    which face-wise constant tractions represent exactly."""
+    u = w0 + h c on side -, plus J = j + h (a, b) on side +, with h = x_d - 1/2. c is chosen such that
+    sigma(w) n = (lambda_t, -N) on the fracture; a = -grad j_n and b = -lam/(lam + 2G) div j_t give equal
+    tractions on both sides. Derivatives use complex steps. In the regime "uniform" all faces slide under a
+    uniform traction, which face-wise constant tractions represent exactly."""
     G, lam, friction, stiffness, dilation, gap, closure, normal_stiffness = 1, 1, 0.5, 2, math.tan(0.1), 0.02, 0.1, 5
 
     def __init__(self, dimension, regime):
@@ -149,11 +149,10 @@ class Manufactured:
 
 
 class Wavy:
-    """Two half planes with the gap 0.01 (1 - cos(2 pi x)), pressed together by the mean pressure pb < p* = pi G/(1
-    - nu) 0.01.
+    """Two half planes with the gap 0.01 (1 - cos(2 pi x)), pressed together by the mean pressure pb < p*.
 
-    They are in contact for |x| < a with sin^2(pi a) = pb/p*. Westergaard (1939); Johnson, Contact Mechanics,
-    ch. 13."""
+    p* = pi G/(1 - nu) 0.01. They are in contact for |x| < a with sin^2(pi a) = pb/p*. Westergaard (1939);
+    Johnson, Contact Mechanics, ch. 13."""
     amplitude = 0.01
 
     def __init__(self, load, G, nu):

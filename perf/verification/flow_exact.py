@@ -1,8 +1,8 @@
 """Exact pressures and flows of the flow cases, as functions of arrays of points, independent of the program.
 
 Solutions have `pressure` and Darcy `velocity` [point, d] in the rock; in fractures `pressure_in` and `flow_in`
-[point, d], the flow through the whole aperture: transmissivity times pressure gradient. kappa =
-permeability/viscosity."""
+[point, d], the flow through the whole aperture: transmissivity times negative pressure gradient.
+kappa = permeability/viscosity."""
 import numpy as np
 
 STEP = 1e-20  # complex step for derivatives without cancellation
@@ -89,9 +89,9 @@ class Manufactured:
     """Manufactured solution in the unit square or cube with the fracture x_d = 1/2 and the pressure f in the
     fracture.
 
-    The inflow g from each side requires a pressure difference g/C with a normal resistance, else none. With h =
-    x_d - 1/2, the pressure in the rock is (f + g/C) cos 2h +- g/(2 kappa) sin 2h, + on side +. Derivatives use
-    complex steps."""
+    The inflow g from each side requires a pressure difference g/C with a normal resistance, else none. With
+    h = x_d - 1/2, the pressure in the rock is (f + g/C) cos 2h +- g/(2 kappa) sin 2h, + on side +. Derivatives
+    use complex steps."""
     kappa = 2
 
     def __init__(self, dimension, resists):

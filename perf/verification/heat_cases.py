@@ -43,8 +43,8 @@ def heat_half_space():
 def heat_front():
     """Front of fluid at 1 K that enters at x = 0, with advection and conduction (Ogata and Banks 1961).
 
-    With cells of 0.75 m (n = 40) spatial and temporal errors happen to cancel; therefore the series begins at n
-    = 80."""
+    With cells of 0.75 m (n = 40) spatial and temporal errors happen to cancel; therefore the series begins at
+    n = 80."""
     def exact(x):
         width = 2 * math.sqrt(DIFFUSIVITY * DAY)
         return 0.5 * (erfc((x - VELOCITY * DAY) / width) + np.exp(np.minimum(VELOCITY * x / DIFFUSIVITY, 600)) * erfc((x + VELOCITY * DAY) / width))

@@ -9,8 +9,8 @@ class Sliding(flow_exact.Manufactured, exact.Manufactured):
     """Manufactured solution at t = 1 in the unit square or cube; the fracture x_d = 1/2 slides and opens.
 
     The normal traction is N = t N_1, the slip s = t s_1 along m, the dilation tan theta s. Pressures are those
-    of flow_exact.Manufactured without resistance, times t. Fluid with the volumetric heat capacity c =
-    `carried` enters the fracture from below and leaves it above.
+    of flow_exact.Manufactured without resistance, times t. Fluid with the volumetric heat capacity
+    c = `carried` enters the fracture from below and leaves it above.
 
     The fracture temperature is 3 + t (2 + sin(2x - y)); the adjacent rock is warmer by e. H = 2 k_f/a_0 is the
     conductance of half of the fracture, c g the heat capacity flux through its side. From a side with inflow

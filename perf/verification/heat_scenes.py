@@ -29,7 +29,7 @@ def sliding_fractures():
 
 def sliding_in_time():
     """Writes the scenes of heat_exact.SlidingInTime, with errors of the time steps only. Lame's constants are 1,
-    and M = 3."""
+    the oedometric modulus is M = 3."""
     known = heat_exact.SlidingInTime()
     slip, slides, p, flows = "(1-cos(2*t))/4", "sin(2*t)/2", "sin(3*t)", "3*cos(3*t)"
     opens = f"{known.tangent!r}*{slides}"

@@ -15,8 +15,8 @@ def stress(u, x):
 
 
 def displacements(dimension, N, shear, tangential, normal, more=0, size=1):
-    """Displacements of side - and side + for a given jump and traction on the fracture: shear, and N on side -, N
-    + more on side +."""
+    """Displacements of side - and side + for a given jump and traction on the fracture: shear, and N on side -,
+    N + more on side +."""
     x, half = COORDINATES[:dimension], sp.Rational(1, 2)
     s, last, y = x[:-1], x[-1], x[1] if dimension == 3 else 0
     h = last - half

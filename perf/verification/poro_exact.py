@@ -119,10 +119,10 @@ class Joined:
     """Block of height 1 with a through-going fracture at fluid pressure p, fixed at its bottom and displaced by
     `way` at its top.
 
-    `way` = (tangential, normal). The equations are N + share p = N0 + k_n ([[u]]_n - d_n) and shear traction =
-    T0 + k_s (d_t - [[u]]_t). `share` is 1 for undrained rock or a Biot coefficient of 0, and 1 - alpha if the
-    rock has the fracture's pressure. Joint as in docs/model/model.md, (11)-(14); the jump includes the elastic
-    shear displacement due to T0."""
+    `way` = (tangential, normal). The equations are N + share p = N0 + k_n ([[u]]_n - d_n) and shear
+    traction = T0 + k_s (d_t - [[u]]_t). `share` is 1 for undrained rock or a Biot coefficient of 0, and
+    1 - alpha if the rock has the fracture's pressure. Joint as in docs/model/model.md, (11)-(14); the jump
+    includes the elastic shear displacement due to T0."""
     lam: float  # undrained value for undrained rock
     G: float
     way: tuple
