@@ -52,6 +52,8 @@ def write_offline_search(site, searched):
 
 
 def build(site):
+    if site.is_dir() and any(site.iterdir()) and not (site / "search/offline.js").exists():
+        raise pages.PageError(f"{site}: holds other files than a site, which would be removed; name another directory")
     from mkdocs.commands.build import build as build_site
     from mkdocs.config import load_config
     from mkdocs.exceptions import Abort
