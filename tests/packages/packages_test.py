@@ -60,8 +60,9 @@ class Debian:
         surroundings = {name: value for name, value in os.environ.items() if name.startswith("PIP_") or name.endswith("_proxy")}
         surroundings |= {"PATH": "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": home, "DEBIAN_FRONTEND": "noninteractive",
                          "CCACHE_DIR": "/ccache", "CC": "cc", "CXX": "c++", "LC_ALL": "C.UTF-8"}
-        inside = f"mount --bind {self.cache} {self.folder}/ccache && exec chroot --userspec={user} {self.folder} bash -c \"$0\""
-        done = subprocess.run(["unshare", "--mount", "--pid", "--fork", f"--mount-proc={self.folder}/proc", "sh", "-c", inside,
+        enter = (f"mount --bind {self.cache} {self.folder}/ccache && mount -t sysfs sysfs {self.folder}/sys && "
+                 f"exec chroot --userspec={user} {self.folder} bash -c \"$0\"")
+        done = subprocess.run(["unshare", "--mount", "--pid", "--fork", f"--mount-proc={self.folder}/proc", "sh", "-c", enter,
                                f"cd {home}; {command}"], env=surroundings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True)
         if done.returncode != expect:
@@ -92,9 +93,9 @@ class Packages(unittest.TestCase):
         self.assertEqual(len((PACKAGES / "SHA256SUMS").read_text().splitlines()), 4)
 
     def test_2_program(self):
-        self.debian.install("/packages/sprekk_*.deb")
-        self.assertNotIn("g++", self.user("ls /usr/bin"))
-        version = re.search(r"VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+        self.debian.install("/packages/sprekk_*.deb", "gcc-", "gcc-12-", "g++-", "g++-12-")  # some packages recommend them
+        self.user("type gcc c++ cc", expect=1)
+        version = re.search(r"project\(Sprekk VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
         self.assertIn(version, self.user("sprekk --version"))
         self.assertNotIn("./sprekk", self.user("sprekk --help"))
         self.user(f"sprekk check {XML}/seed/push_2d.xml")
@@ -104,11 +105,10 @@ class Packages(unittest.TestCase):
         self.user("sprekk report two")
         self.assertGreater((self.debian.folder / "home/user/two/report.html").stat().st_size, 1_000_000)  # with the 3D view
         self.user(f"sprekk point {XML}/point/cyclic_shear.xml > point.csv && sprekk plot point.csv")
-        self.user(f"sprekk mesh {XML}/networks/outcrop_2d.xml -o outcrop.msh && sprekk mesh-info outcrop.msh")
+        self.user(f"sprekk mesh {XML}/networks/outcrop_2d.xml -o outcrop.msh && sprekk mesh-info outcrop.msh --fractures traces,fault")
         self.user(f"sprekk run {XML}/networks/outcrop_2d.xml --output outcrop && sprekk export outcrop -o outcrop.geojson")
-        for topic in re.findall(r"^ *(\w+)", self.user("sprekk new"), re.MULTILINE):
-            if (self.debian.folder / f"usr/lib/sprekk/xml/new/{topic}.xml").exists():
-                self.user(f"sprekk new {topic} {topic}.xml && sprekk check {topic}.xml")
+        for scene in sorted((ROOT / "xml/new").glob("*.xml")):
+            self.user(f"sprekk new {scene.stem} {scene.name} && test -s {scene.name}")
         for command in ("test", "build", "perf contact", "fuzz", "package", "docs"):
             self.assertIn("requires the source tree", self.user(f"sprekk {command}", expect=1))
 
