@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
 from program import PROGRAM, ROOT, ProgramTest, main  # noqa: E402
@@ -196,6 +197,14 @@ class Checks(ReportTest):
 
         self.change(spoil)
         self.assertEqual(self.verdicts()[name].verdict, "failed")
+
+    def test_reaction_of_one_boundary_is_judged_by_forces_on_fractures(self):
+        """Round-off passes, a force does not."""
+        fractures = {"fault": {"area": 100.0, "mean_traction": {"global": [2e6, -1e7]}}}
+        for reaction, verdict in (1e-5, "passed"), (1e5, "failed"):
+            step = {"reactions": {"far field": [0.0, reaction]}, "fractures": fractures}
+            (check,) = checks.forces([step], mock.Mock(has=lambda entry: False))
+            self.assertEqual(check.verdict, verdict, check)
 
     def test_other_loads_carry_reactions(self):
         self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=2")
