@@ -79,18 +79,18 @@ def of_run(directory, options):
             raise PlotError(f"{directory / 'fractures.pvd'}: has no step at t = {time:g} s, bulk.pvd has one; "
                             "run the scene again")
         cut = joints if joints and joints.GetNumberOfCells() else None
+        deforms = rock.GetPointData().HasArray("displacement")
+        if deforms and cut and read.is_plane(rock) and (figure := overview.of_step(rock, joints, scene, title)):
+            yield "overview", figure
         for picture, kind in ("flow", flow.FLUID), ("temperature", flow.HEAT):
             if rock.GetCellData().HasArray(kind.drive):
                 initial = scene.get("Flow", {}).get("initial pressure") if kind is flow.FLUID else None
                 yield picture, flow.of_step(rock, cut, title, options.whole, kind, initial)
-        deforms = rock.GetPointData().HasArray("displacement")
         if deforms:
             yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
         if deforms and joints and joints.GetNumberOfCells() > 0:
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
             singles = content.get("single_fractures", [])
-            if read.is_plane(rock) and (figure := overview.of_step(rock, joints, scene, title)):
-                yield "overview", figure
             yield "fractures", fractures.of_step(rock, joints, names, title, singles)
             yield "maps", maps.of_step(rock, joints, names, title, singles)
             yield "mohr", mohr.of_step(rock, joints, scene, title, content, time)
