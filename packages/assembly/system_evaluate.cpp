@@ -348,7 +348,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const Real rounding_of_block = rounding(x, unknown.augmented_by.empty() ? unknown.scale : unknown.augmented_by);
     const bool balance = unknown.balance;  // conductances of rows differ
     const bool bounded = !balance && !traction, carried = carried_[b];
-    // Differences of pressure or temperature drive fluxes: an error is relative to these and not to the level.
+    // Differences of the unknown drive its fluxes: errors are relative to these, not to the level.
     const Real driving = balance ? std::min(held_scale, std::max(range_of(*x[b]), least_range * held_scale)) : 0;
     Real stored = 0;  // round-off of the storage terms
     for (const auto& term : unknown.row)
