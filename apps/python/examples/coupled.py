@@ -1,8 +1,8 @@
-"""A flow code in numpy coupled to Sprekk's mechanics by exchange and as rows of its Jacobian, beside Sprekk's own flow:
+"""Numpy flow code coupled to Sprekk's mechanics, by exchange and by rows of the Jacobian, compared with Sprekk's flow.
 
     ./sprekk python apps/python/examples/coupled.py [cells [steps]]
 
-A fluid is injected into a fracture, which slips and opens. As apps/hosts/coupled.cpp."""
+Injection into a fracture causes slip and opening. The C++ version is apps/hosts/coupled.cpp."""
 import sys
 
 import numpy as np
@@ -18,7 +18,7 @@ APERTURE, LEAST, INJECTION, DT = 2e-4, 1e-5, 1e-6, 10  # m, m, m/s^2, s
 
 
 def block(n, flow):
-    """Of 1 m, on rollers, pressed by 2 MPa; with Sprekk's flow or without a fluid."""
+    """Scene of a 1 m block on rollers under 2 MPa, with Sprekk's flow or without a fluid."""
     h, first = 1 / n, n // 4
     rock = {"type": "elastic", "Young's modulus": E, "Poisson's ratio": NU, "Biot coefficient": ALPHA}
     joint = {"type": "joint", "friction coefficient": 0.3, "tangential stiffness": "20 GPa/m",
@@ -42,7 +42,7 @@ def block(n, flow):
 
 
 class Exchange:
-    """The reservoir beside a model of the block. Each rank solves all of the flow, as the code is serial."""
+    """Exchange of data between the reservoir code and a model of the block. Each rank solves the whole flow problem."""
 
     def __init__(self, n):
         self.grid = Grid(n)
@@ -55,8 +55,10 @@ class Exchange:
         self.p = self.room = np.zeros(self.reservoir.n)
 
     def step(self, t, tolerance=1e-5, most=500):
-        """Fixed stress: the flow is solved as if the rock yielded to pressures under constant stress, then the mechanics
-        with its pressures, until neither changes (Pa). Returns how many rounds that took."""
+        """Computes a step by the fixed-stress iteration, until the pressures change by less than the tolerance, Pa.
+
+        Each round solves the flow with the compressibility of rock under constant stress. It then solves the mechanics
+        with the new pressures. Returns the number of rounds."""
         yields = ALPHA**2 * 3 * (1 - 2 * NU) / E, 0.5 / E
         for k in range(1, most + 1):
             last, self.p = self.p, self.reservoir.pressures(t, t - self.model.time, self.room, self.p, yields)
@@ -76,13 +78,13 @@ class Exchange:
 
 
 def distance(a, b):
-    """max |a - b| / max |b| over all ranks."""
+    """Returns max |a - b| / max |b| over all ranks."""
     apart, size = (COMM.allreduce(float(np.max(abs(values), initial=0)), MPI.MAX) for values in (np.subtract(a, b), b))
     return apart / size if apart else 0.0
 
 
 def together(n):
-    """The block and the host's flow in one Jacobian."""
+    """Returns a model of the block with the flow of the host in the same Jacobian."""
     flow = OwnFlow(MOBILITY, STORAGE, VISCOSITY, APERTURE, LEAST, INJECTION)
     return sprekk.Model(block(n, flow=False), COMM, own_pressure=0, modules=[flow])
 
@@ -104,7 +106,7 @@ def main(n=8, steps=4):
     if COMM.rank == 0:
         for way, found in errors.items():
             print(f"{way}: pressure, displacement and jump differ by", ", ".join(f"{error:.1e}" for error in found))
-    return max(map(max, errors.values())) < 1e-8 and len(states) > 1  # contact changes
+    return max(map(max, errors.values())) < 1e-8 and len(states) > 1  # the contact state changes during the run
 
 
 if __name__ == "__main__":

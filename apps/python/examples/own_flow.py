@@ -1,17 +1,24 @@
-"""The flow of a host as rows of Sprekk's Jacobian, in numpy: the equations of reservoir.py. As apps/hosts/own_flow.hpp,
-for plane meshes."""
+"""Flow of a host as rows of Sprekk's Jacobian, in numpy, for 2D meshes. The equations are those of reservoir.py.
+
+The C++ version is apps/hosts/own_flow.hpp."""
 import numpy as np
 from sprekk import Block, Module, Unknown
 
 
 class OwnFlow(Module):
-    """mobility k/mu (m^2/(Pa s)), storage at constant strain (1/Pa), viscosity (Pa s), aperture at the start and the
-    least (m), injection into fractures, growing with time (m/s^2)
+    """Rows of the pressures.
+
+    mobility    k/mu, m^2/(Pa s)
+    storage     1/M at constant strain, 1/Pa
+    viscosity   Pa s
+    aperture    initial value, m
+    least       lower bound of the aperture, m
+    injection   into fractures, growth rate of the flux, m/s^2
 
     | row           | of                     |                                                        |
     | pressure      | cells                  | V (p - p_old)/(M dt) + sum of q, q = T (p - p_face)    |
     | face pressure | facets of cells        | -q                                                     |
-    |               | fracture faces         | |f| ((b - b_old)/dt - injection) + sum of q to ridges  |
+    |               | fracture faces         | |f| ((b - b_old)/dt - injection t) + sum of q to ridges|
     |               | ridges of these        | -q, q = a^3/(12 viscosity) l/d (p - p_ridge)           |"""
     name = "own flow"
     unknowns = (Unknown("pressure", "cell", unit="Pa", scale="pressure", condensed_into="face pressure", balance=True),
@@ -26,7 +33,7 @@ class OwnFlow(Module):
 
     def blocks(self, mesh):
         corners = mesh.coordinates[mesh.corners]
-        ends = np.roll(corners, -1, axis=1)  # face k leads from corner k to the next
+        ends = np.roll(corners, -1, axis=1)  # face k connects corner k and the next
         size, centre = np.linalg.norm(ends - corners, axis=2), (corners + ends) / 2
         distance = np.linalg.norm(centre - centre.mean(axis=1, keepdims=True), axis=2)
         self.T, self.volume = self.mobility * size / distance, np.sum(size * distance, axis=1) / 2
@@ -40,7 +47,7 @@ class OwnFlow(Module):
         q = self.T * (p - faces)
         stored = np.zeros(len(p))
         old = state.histories["old pressure"][:, 0]
-        n = len(old)  # cells that this rank owns come first
+        n = len(old)  # owned cells come first
         stored[:n] = self.volume[:n] * self.storage * state.rate * (p[:n, 0] - old)
         return {"pressure": (stored + q.sum(axis=1))[:, None], "face pressure": -q}
 
@@ -51,7 +58,7 @@ class OwnFlow(Module):
                 ("face pressure", "pressure"): -T[:, :, None], ("face pressure", "face pressure"): T[:, :, None] * np.eye(n)}
 
     def fracture(self, x, state):
-        p, b = x["face pressure"], x["widening"][:, 0]  # of the face, then of its two ends
+        p, b = x["face pressure"], x["widening"][:, 0]  # face, then its two ends
         a = np.maximum(self.aperture + b, self.least)
         q = (a**3 / (12 * self.viscosity) * 2 / self.area)[:, None] * (p[:, :1] - p[:, 1:])
         gains = np.zeros(len(b))

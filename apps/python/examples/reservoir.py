@@ -1,12 +1,13 @@
-"""The flow code of a host, in numpy: finite volumes with two-point fluxes on a grid of its own, which knows nothing of
-Sprekk. As apps/hosts/reservoir.hpp, in 2D."""
+"""Flow code of a host, in numpy: finite volumes with two-point fluxes, on an own grid and without use of Sprekk.
+
+The C++ version is apps/hosts/reservoir.hpp."""
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 
 class Grid:
-    """The unit square with n x n cells and one fracture below the cells of row n/2, over the columns first..last-1."""
+    """Unit square with n x n cells, and a fracture below the cells of row n/2 in the columns first..last-1."""
 
     def __init__(self, n):
         self.n, self.h = n, 1 / n
@@ -14,7 +15,7 @@ class Grid:
         self.n_cells, self.n_faces = n * n, self.last - self.first
 
     def cells_at(self, x):
-        """Numbers of cells at points [point, 2]."""
+        """Returns the indices of the cells at points [point, 2]."""
         i, j = np.floor(np.asarray(x) / self.h).astype(int).T
         return i + self.n * j
 
@@ -22,7 +23,7 @@ class Grid:
         return self.n_cells + np.floor(np.asarray(x)[:, 0] / self.h).astype(int) - self.first
 
     def connections(self):
-        """Pairs of neighbours: two cells [k, 2], a cell and a fracture face, two fracture faces."""
+        """Returns pairs of neighbours [k, 2]: two cells, a cell and a fracture face, two fracture faces."""
         cells = np.arange(self.n_cells).reshape(self.n, self.n)  # [j, i]
         faces = self.n_cells + np.arange(self.n_faces)
         along = np.stack([cells[:, :-1], cells[:, 1:]], axis=-1).reshape(-1, 2)
@@ -36,11 +37,17 @@ class Grid:
 
 
 class Reservoir:
-    """One implicit step after another, each with the room that the rock leaves the fluid taken as given: of cells what
-    pores have gained, m^3, of faces the widening, m, in one array.
+    """Implicit time steps with given volume changes of the rock.
 
-    mobility k/mu (m^2/(Pa s)), storage at constant strain (1/Pa), stabilisation (1/Pa): times h^2 the mobility of dp/dt;
-    viscosity (Pa s), aperture at the start and the least (m), injection into the fracture, growing with time (m/s^2)"""
+    The array `room` contains the gained pore volume of cells, m^3, then the widening of faces, m.
+
+    mobility       k/mu, m^2/(Pa s)
+    storage        1/M at constant strain, 1/Pa
+    stabilisation  1/Pa; times h^2 it is the mobility of dp/dt
+    viscosity      Pa s
+    aperture       initial value, m
+    least          lower bound of the aperture, m
+    injection      into the fracture, growth rate of the flux, m/s^2"""
 
     def __init__(self, grid, mobility, storage, stabilisation, viscosity, aperture, least, injection):
         self.grid, self.mobility, self.storage, self.stabilisation = grid, mobility, storage, stabilisation
@@ -49,8 +56,10 @@ class Reservoir:
         self.old, self.old_room = np.zeros(self.n), np.zeros(self.n)
 
     def pressures(self, t, dt, room, last, yields):
-        """At the end t of a step dt. What the room makes of a pressure that differs from `last`, for which it was found,
-        is guessed: by `yields` (of rock, 1/Pa; of the fracture, m/Pa)."""
+        """Returns the pressures, Pa, at the end t of a step dt, s.
+
+        The array `room` belongs to the pressures `last`. The estimates `yields` of its derivative
+        by pressure are for rock, 1/Pa, and for the fracture, m/Pa."""
         h, rock = self.grid.h, np.arange(self.n) < self.grid.n_cells
         stored = np.where(rock, h**2 * self.storage, 0)
         guess = np.where(rock, h**2 * yields[0], h * yields[1])
@@ -68,7 +77,7 @@ class Reservoir:
         return spsolve(A, b)
 
     def transmissibilities(self, dt, room):
-        """(pairs, T dt, what the difference of pressures counts for by its growth)"""
+        """Yields (pairs, T dt, factor of the increment of the pressure difference)."""
         cells, sides, faces = self.grid.connections()
         h = self.grid.h
         ones = np.ones(len(cells))

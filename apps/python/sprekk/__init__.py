@@ -1,12 +1,12 @@
-"""Sprekk: deformation of fractured rock.
+"""Simulation of deformation, flow and heat in fractured rock.
 
     import sprekk
     model = sprekk.Model(sprekk.Scene("xml/seed/push_2d.xml"))
     model.run()
     model.output("slip")
 
-docs/use/python.md is an introduction."""
-import mpi4py.MPI as _mpi  # begins MPI, and ends it after the interpreter
+The introduction is docs/use/python.md."""
+import mpi4py.MPI as _mpi  # initialises MPI, and finalises it when the interpreter ends
 
 from . import _sprekk
 from ._sprekk import Checkpoint, Error, StepReport

@@ -1,11 +1,12 @@
-"""Sections of scenes as classes, made of what the program knows of its entries: names, units, bounds, meanings.
+"""Classes for the sections of scenes, generated from the specification of the program: names, units, bounds, meanings.
 
     from sprekk.entries import Sprekk, Mesh, Material, Time
     scene = Sprekk(mesh=Mesh(cells=[8, 8]), materials={"rock": Material(type="elastic", youngs_modulus="30 GPa")}, ...)
     model = sprekk.Model(scene)
 
-An entry is an attribute of the same name in small letters, with _ for blanks: "Young's modulus" is youngs_modulus.
-What is None is not given. Sections by names of your choice are dicts. Values are checked where a Scene is made."""
+An entry is an attribute with the same name in lower case, with _ for blanks: "Young's modulus" is youngs_modulus.
+None means that the entry is absent. Sections with user-defined names are dicts. The constructor of Scene checks the
+values."""
 import difflib
 import keyword
 import re
@@ -21,10 +22,10 @@ OTHERS = "other sections"
 
 
 class Section:
-    """A section of a scene."""
-    _names = {}  # of entries and sections by attributes
-    _sections = {}  # (class, is a dict of it) by names
-    _open = False  # other sections, as they stand in a scene, are in the dict `sections`
+    """Base class of the sections of a scene."""
+    _names = {}  # {attribute: name of the entry or section}
+    _sections = {}  # {name of the section: (class, True for a dict of sections)}
+    _open = False  # True: the dict `sections` holds other sections, unchanged
 
     def __init__(self, **values):
         for attribute in self._names:
@@ -40,7 +41,7 @@ class Section:
         object.__setattr__(self, attribute, value)
 
     def to_entries(self):
-        """As a dict of the names that the program knows."""
+        """Returns a dict with the names of the program."""
         entries = {name: as_entries(value) for attribute, name in self._names.items()
                    if (value := getattr(self, attribute)) is not None}
         others = entries.pop(OTHERS, {})
@@ -48,7 +49,7 @@ class Section:
 
     @classmethod
     def from_entries(cls, entries):
-        """The reverse, of a dict as Scene.entries gives it."""
+        """Creates a section from a dict such as Scene.entries."""
         section = cls()
         attributes = {name: attribute for attribute, name in cls._names.items()}
         for name, value in entries.items():
@@ -79,13 +80,13 @@ def as_entries(value):
 
 
 def attribute_of(name):
-    """Young's modulus: youngs_modulus"""
+    """Returns the attribute of an entry: youngs_modulus for "Young's modulus"."""
     attribute = re.sub(r"\W+", "_", name.replace("'", "")).strip("_").lower()
     return attribute + "_" if keyword.iskeyword(attribute) else attribute
 
 
 def class_name(path):
-    """Of ("Boundary conditions", "") BoundaryCondition; of ("Mesh", "fractures", "") MeshFracture."""
+    """Returns the name of the class of a path, e.g. BoundaryCondition for ("Boundary conditions", "")."""
     words = []
     for part in path:
         if part:
@@ -96,7 +97,7 @@ def class_name(path):
 
 
 def described(entry):
-    """A line of a docstring."""
+    """Returns one line of a docstring: meaning, unit, bounds, default."""
     notes = [] if entry["unit"] == "-" else [entry["unit"]]
     if entry["choices"]:
         notes.append(" | ".join(f'"{word}"' for word in entry["choices"]))
@@ -115,11 +116,11 @@ def annotation(entry):
 
 
 class Plan:
-    """What a class is made of: attributes with names, annotations and lines of documentation."""
+    """Content of a class: its attributes with names, annotations and lines of documentation."""
 
     def __init__(self, section, path, plans):
         self.name, self.meaning = class_name(path) or "Sprekk", section["meaning"]
-        self.attributes, self.sections = {}, {}  # attribute: (name, annotation, line); name: (class, is a dict of it)
+        self.attributes, self.sections = {}, {}  # {attribute: (name, annotation, line)}, {name: (class, is dict)}
         for entry in section["entries"]:
             if entry["name"]:
                 self.attributes.setdefault(attribute_of(entry["name"]), (entry["name"], annotation(entry), described(entry)))
@@ -155,7 +156,7 @@ class Plan:
 
 
 def plans():
-    """Of all classes; those that others need come first."""
+    """Returns the plans of all classes; each follows the plans that it uses."""
     found = []
     Plan(_sprekk.specification(), (), found)
     return found
@@ -172,7 +173,7 @@ def classes():
 
 
 def stub():
-    """The text of entries.pyi, for editors."""
+    """Returns the text of entries.pyi, for editors."""
     lines = ['# Printed by `./sprekk python -m sprekk.entries`.', "from typing import Any, Literal, Sequence", "",
              "class Section:", "    def to_entries(self) -> dict[str, Any]: ...",
              "    @classmethod", "    def from_entries(cls, entries: dict[str, Any]) -> Any: ..."]

@@ -1,20 +1,21 @@
-"""Arrays that are the memory of a model."""
+"""Arrays in the memory of a model."""
 import numpy as np
 
 
 class StaleField(RuntimeError):
-    """An array of equations that are gone: the model has been changed or closed since."""
+    """Access to a field after its model was changed or closed."""
 
 
 class Epoch:
-    """From one change of a model's equations to the next."""
+    """Period between two changes of the equations of a model; `over` after its end."""
     over = False
 
 
 class Field(np.ndarray):
-    """A field in place: what is written counts in the model's next step. What is computed from it is an ordinary
-    array; np.asarray() gives one that is read-only, so that nothing is written in vain. A Field raises StaleField once
-    the model has other equations; the memory of views stays, with the last values."""
+    """Array [entity, component] in the memory of a model. Written values take effect in the next step.
+
+    Results of computations are ordinary arrays. np.asarray() returns a read-only view, so that no assignment is lost. A
+    Field raises StaleField after a change of the equations. The memory of views remains valid, with the last values."""
 
     def __new__(cls, values, epoch):
         values = np.asarray(values)
@@ -31,7 +32,7 @@ class Field(np.ndarray):
             raise StaleField("the model has been changed or closed since this array was asked for; ask for it again")
 
     def _writable(self):
-        """The same as an ordinary array that may be written."""
+        """Returns the same values as an ordinary, writable array."""
         self._check()
         if self.flags.writeable or self._memory is None:
             return self.view(np.ndarray)

@@ -6,24 +6,25 @@ MESHIO = {"triangle": "triangle", "quadrilateral": "quad", "tetrahedron": "tetra
 
 
 class Mesh:
-    """The mesh of this rank, or a whole one that has been gathered. Lengths in metre.
+    """Mesh of this rank, or the whole mesh after gathering. Lengths in m.
 
     coordinates   [node, dim]
     cells         [cell, node of the cell], in the order of VTK
     cell_region   [cell], index into regions
     faces         [fracture face, side -, +; node of the face], corners first
     face_fracture, face_single    [fracture face], index into fractures, single_fractures
-    face_area     [fracture face]
+    face_area     [fracture face], m^2 (2D: m)
     face_centre   [fracture face, dim]
     face_frame    [fracture face, n, t1[, t2]; dim], n from side - to side +
-    face_cells    [fracture face, side -, +], -1 where the cell is on another rank
-    face_share    [fracture face, node of a side], what the mean over the face takes of each node, at side -
-    face_bubble   [fracture face], the same of the face's bubble
-    sides         [side of a fracture face whose cell is on this rank; number of the face, 0 or 1 for - or +]
-    side_share    [side, node], side_bubble [side], as those of faces
+    face_cells    [fracture face, side -, +], -1 if the cell is on another rank
+    face_share    [fracture face, node of side -], weights of the nodes in the mean over the face
+    face_bubble   [fracture face], weight of the side bubble in this mean
+    sides         [side of a fracture face with its cell on this rank; index of the face, 0 or 1 for - or +]
+    side_share    [side, node], weights as in face_share
+    side_bubble   [side], weights as in face_bubble
     node_id, cell_id, face_id     numbers in the whole mesh
 
-    Of a rank's part nodes and cells that it owns come first, as many as n_owned_nodes and n_owned_cells."""
+    On one rank, the first n_owned_nodes nodes and the first n_owned_cells cells are owned; the others are ghosts."""
 
     def __init__(self, arrays):
         self.shape, self.dim = arrays["shape"], arrays["dim"]
@@ -36,12 +37,12 @@ class Mesh:
 
     @property
     def corners(self):
-        """[cell, corner]"""
+        """Corner nodes [cell, corner]."""
         return self.cells[:, :{"tri": 3, "qua": 4, "tet": 4, "hex": 8}[self.shape[:3]]]
 
     @property
     def triangles(self):
-        """[triangle, node] of a plane mesh, quadrilaterals cut in two; and the cell of each."""
+        """Triangles [triangle, node] of a 2D mesh and the cell of each. Quadrilaterals are divided in two."""
         corners = self.corners
         if corners.shape[1] == 3:
             return corners, np.arange(len(corners))
@@ -49,17 +50,17 @@ class Mesh:
         return cut, np.repeat(np.arange(len(corners)), 2)
 
     def triangulation(self, displacement=None, scale=1):
-        """For matplotlib, of a plane mesh; moved by a displacement [node, dim], which is enlarged."""
+        """Returns a triangulation of matplotlib for a 2D mesh, moved by scale * displacement [node, dim]."""
         from matplotlib.tri import Triangulation
         points = self.coordinates if displacement is None else self.coordinates + scale * np.asarray(displacement)
         return Triangulation(points[:, 0], points[:, 1], self.triangles[0])
 
     def segments(self):
-        """[fracture face, end, dim] of a plane mesh, for matplotlib's LineCollection."""
+        """Returns the faces [fracture face, end, dim] of a 2D mesh, for matplotlib's LineCollection."""
         return self.coordinates[self.faces[:, 0, :2]]
 
     def to_meshio(self, point_data=None, cell_data=None):
-        """For meshio, and so for PyVista (pyvista.from_meshio); data by names, [node, ...] and [cell, ...]."""
+        """Returns a meshio.Mesh, also for pyvista.from_meshio. Data: dicts of arrays [node, ...] and [cell, ...]."""
         import meshio
         points = np.zeros((len(self.coordinates), 3))
         points[:, :self.dim] = self.coordinates
@@ -67,7 +68,7 @@ class Mesh:
                            cell_data={name: [values] for name, values in (cell_data or {}).items()})
 
     def fractures_to_meshio(self, face_data=None):
-        """The fracture faces at side minus; data by names, [fracture face, ...]."""
+        """Returns a meshio.Mesh of the fracture faces at side -. The data are a dict of arrays [fracture face, ...]."""
         import meshio
         n = {"tri": 2, "qua": 2, "tet": 3, "hex": 4}[self.shape[:3]]
         kind = {(2, 2): "line", (3, 3): "triangle", (3, 4): "quad"}[self.dim, n]

@@ -1,4 +1,4 @@
-"""Models: scenes brought to life."""
+"""Models: the equations and the state of a scene."""
 import json
 import os
 import sys
@@ -14,7 +14,7 @@ from .scene import Scene
 
 
 class NotConverged(_sprekk.Error):
-    """A step found no solution; the model is where it was. `report` is a StepReport."""
+    """Failure of a step. The model remains in the last converged state, at model.time. `report` is a StepReport."""
 
     def __init__(self, report):
         super().__init__(report.reason)
@@ -22,15 +22,15 @@ class NotConverged(_sprekk.Error):
 
 
 class Model:
-    """A scene brought to life on ranks: mesh, equations, and the present state.
+    """Mesh, equations and present state of a scene, distributed over ranks.
 
-    scene           a Scene, or what makes one
-    comm            of mpi4py; all ranks of it call all members in the same order
-    given_pressure  the initial pressure (Pa) of a fluid whose pressure is then given by set_fluid_pressure()
-    own_pressure    the same of a fluid whose "pressure" (cells) and "face pressure" (facets) are unknowns of a module
-    modules         terms and equations of your own, objects of sprekk.Module
+    scene           a Scene, or an argument of its constructor
+    comm            communicator of mpi4py; all its ranks call all members in the same order
+    given_pressure  initial fluid pressure, Pa; set_fluid_pressure() prescribes the later pressures
+    own_pressure    initial fluid pressure, Pa; "pressure" (cells) and "face pressure" (facets) are unknowns of a module
+    modules         user-defined terms and equations, objects of sprekk.Module
 
-    Errors are raised on all ranks alike."""
+    Errors are raised on all ranks."""
 
     def __init__(self, scene, comm=MPI.COMM_WORLD, *, given_pressure=None, own_pressure=None, modules=()):
         scene = scene if isinstance(scene, Scene) else Scene(scene, comm=comm)
@@ -46,48 +46,47 @@ class Model:
 
     @property
     def time(self):
-        """Of the present state, s."""
+        """Time of the present state, s."""
         return self._handle.time
 
     def step(self, t):
-        """Goes to the time t in one step, in substeps where it must. Raises NotConverged."""
+        """Computes the step to the time t, s, with bisection if necessary. Raises NotConverged."""
         return self._finished(self._handle.step_to(float(t)))
 
     def find_equilibrium(self):
-        """An equilibrium at the present time, with what has changed since the last. Raises NotConverged."""
+        """Computes an equilibrium at the present time, e.g. after change(). Raises NotConverged."""
         return self._finished(self._handle.find_equilibrium())
 
     def take_back(self):
-        """Goes back to where the last step began, to take it again under other loads."""
+        """Returns to the beginning of the last step, e.g. to repeat the step with other loads."""
         self._handle.take_back()
 
     def change(self, changed):
-        """Goes on as another Scene, or with other entries of this one: {"Bulk.gravity": [0, -9.81]}. Fields must be
-        asked for again."""
+        """Replaces the scene, or entries such as {"Bulk.gravity": [0, -9.81]}. The state persists; fields become stale."""
         scene = changed if isinstance(changed, Scene) else self.scene.changed(changed, self.comm)
         self._handle.change(scene._handle)
         self.scene = scene
         self._renew()
 
     def save(self):
-        """All that the next step depends on, a Checkpoint; checkpoint.write(folder) keeps it on disk."""
+        """Returns a Checkpoint with all data of the next step; checkpoint.write(folder) writes it to disk."""
         return self._handle.save()
 
     def restore(self, checkpoint):
-        """Goes back to a Checkpoint, or to one in a folder, written on any number of ranks."""
+        """Restores a Checkpoint or the checkpoint in a folder, written on any number of ranks."""
         if isinstance(checkpoint, (str, os.PathLike)):
             checkpoint = _sprekk.Checkpoint.read(os.fspath(checkpoint), self.comm)
         self._handle.restore(checkpoint)
 
     def run(self, callback=None, *, progress=False, output=None):
-        """Takes the steps of the section Time, with its stages, as `./sprekk run` does.
+        """Computes the steps and stages of the section Time, as `./sprekk run`.
 
-        callback  called as callback(model, step) after each; a dict that it returns goes into the table
-        progress  show a bar (tqdm)
-        output    a folder for results.json and the files of fields, as `./sprekk run` writes them
+        callback  function callback(model, step), called after each step; a returned dict adds columns to the table
+        progress  True shows a progress bar (tqdm)
+        output    folder for results.json and field files, as written by `./sprekk run`
 
-        Returns a table, pandas.DataFrame, with a row for each step: time, dt, and what it cost. A scene with the
-        section Accuracy needs several meshes and models, which `./sprekk run` makes; here it is an Error."""
+        Returns a pandas.DataFrame with a row for each step: time, dt, iterations and bisections. Raises NotConverged. A
+        scene with the section Accuracy raises an Error, since it requires several meshes and `./sprekk run`."""
         if "Accuracy" in self.scene.entries:
             raise _sprekk.Error(f'{self.scene.name}: Sprekk > Accuracy: a Model has one mesh, so that run() cannot reach an '
                                 'error that is asked for; `./sprekk run` does. Leave the section out to run on this mesh')
@@ -128,32 +127,35 @@ class Model:
 
     @property
     def fields(self):
-        """Names of what may be read and written in place, with what it lives on, components and unit."""
+        """Fields that can be read and written in place: {name: (entity, components, unit)}."""
         return self._handle.fields()
 
     def field(self, name):
-        """Unknowns or a history in place, [entity that this rank owns, component]: no copy. Valid until the model is
-        changed; then it raises StaleField. np.asarray() of it is a read-only view, whose memory lives on."""
+        """Returns a Field [entity owned by this rank, component], without a copy: unknowns or a history variable.
+
+        After a change of the model the array raises StaleField. np.asarray() returns a read-only view."""
         return Field(self._handle.field(name), self._epoch)
 
     @property
     def outputs(self):
-        """All outputs of the present state by their names, see output()."""
+        """All outputs of the present state, {name: array as in output()}."""
         return {name: values for name, (values, _) in self._handle.outputs().items()}
 
     def output(self, name):
-        """An output of the present state, see docs/use/output.md: [cell or face that this rank owns, component], or [node
-        of this rank, component]; of numbers without the last index."""
+        """Returns an output of the present state, see docs/use/output.md.
+
+        The shape is [owned cell or face, component], or [local node, component]; scalars have no last index."""
         return self._output(name)[0]
 
     def units(self):
-        """Those of all outputs and fields."""
+        """Returns the units of all outputs and fields, {name: unit}."""
         kinds = {**self.fields, **{name: kind for name, (_, kind) in self._handle.outputs().items()}}
         return {name: unit for name, (_, _, unit) in kinds.items()}
 
     def fractures(self, singles=False):
-        """What each set of fractures does, or each single fracture: area, states, means and maxima of outputs, as a
-        pandas.DataFrame. Vectors have a column for each component."""
+        """Returns a pandas.DataFrame with a row for each set of fractures, or for each single fracture.
+
+        Columns are area, states, means and maxima of outputs. Vectors have a column for each component."""
         import pandas
         mesh, columns = self.mesh, {}
         for name, unit, values in self._handle.fracture_table(singles):
@@ -162,12 +164,12 @@ class Model:
         return pandas.DataFrame(columns, index=mesh.single_fractures if singles else mesh.fractures)
 
     def single_fractures(self):
-        """Set, area, centre, normal, strike and dip of each single fracture, a pandas.DataFrame."""
+        """Returns a pandas.DataFrame with set, area, centre, normal, strike and dip of each single fracture."""
         import pandas
         return pandas.DataFrame(json.loads(self._handle.described_singles()))
 
     def reactions(self):
-        """What each condition exerts, {condition: {field: force [component], ...}}, in N (2D: N/m), W or m^3/s."""
+        """Returns the reactions {condition: {field: [component], ...}}, in N (2D: N/m), W or m^3/s."""
         reactions = {}
         for condition, field, _, force, _ in self._handle.reactions():
             held = reactions.setdefault(condition, {})
@@ -175,30 +177,33 @@ class Model:
         return reactions
 
     def totals(self):
-        """Numbers of the whole state, "fluid > stored" and the like."""
+        """Returns totals over the domain, such as "fluid > stored"."""
         return self._handle.totals()
 
     def warnings(self):
-        """What of the scene is allowed and hardly meant."""
+        """Returns the warnings about implausible input of the scene."""
         return self._handle.warnings()
 
     def set_fluid_pressure(self, cells, faces):
-        """The pressures (Pa) of the fluid in owned cells and fracture faces from the next step on, of a model with
-        given_pressure. The outputs "gained pore volume" and "widening" say what room that makes."""
+        """Sets the fluid pressures, Pa, of owned cells and fracture faces from the next step on.
+
+        Requires `given_pressure`. The outputs "gained pore volume" and "widening" contain the change of pore volume and
+        aperture."""
         self._handle.set_fluid_pressure(np.asarray(cells, float).ravel(), np.asarray(faces, float).ravel())
 
     # Mesh
 
     @property
     def mesh(self):
-        """The Mesh of this rank."""
+        """Mesh of this rank."""
         if self._last_mesh is None:
             self._last_mesh = Mesh(self._handle.mesh())
         return self._last_mesh
 
     def gather(self, name, root=0, *, field=False):
-        """An output of all ranks, or a field, which may have the same name, on one of them, in the order of the whole
-        mesh; None on others."""
+        """Returns an output of all ranks on the rank `root`, in the order of the whole mesh; None on the others.
+
+        With field=True the name is that of a field, since an output may have the same name. Collective."""
         values, entity = (self.field(name), self.fields[name][0]) if field else self._named(name)
         mesh = self.mesh
         ids = {"node": mesh.node_id, "cell": mesh.cell_id, "fracture face": mesh.face_id}.get(entity)
@@ -207,11 +212,11 @@ class Model:
         return self._gathered(values, ids[:len(values)], root)
 
     def gather_mesh(self, root=0):
-        """The whole Mesh on one rank; None on others."""
+        """Returns the whole Mesh on the rank `root`, None on the others. Collective."""
         mesh, arrays = self.mesh, self._handle.mesh()
         n = mesh.n_owned_cells
         arrays["cells"] = mesh.node_id[mesh.cells]
-        arrays["face_nodes"] = mesh.node_id[np.where(mesh.faces < 0, mesh.faces[:, :1], mesh.faces)]  # side + elsewhere
+        arrays["face_nodes"] = mesh.node_id[np.where(mesh.faces < 0, mesh.faces[:, :1], mesh.faces)]  # side + absent
         for ids, count, names in ((mesh.node_id, len(mesh.node_id), ("coordinates", "node_id")),
                                   (mesh.cell_id, n, ("cells", "cell_region", "cell_id")),
                                   (mesh.face_id, len(mesh.face_id), [name for name in arrays if isinstance(
@@ -222,26 +227,27 @@ class Model:
             return None
         for name in ("cells", "face_nodes"):
             arrays[name] = np.searchsorted(arrays["node_id"], arrays[name])
-        for name in ("face_cells", "sides", "side_share", "side_bubble"):  # of a rank's part alone
+        for name in ("face_cells", "sides", "side_share", "side_bubble"):  # of a local part only
             arrays[name] = None
         arrays.update(n_owned_nodes=len(arrays["node_id"]), n_owned_cells=len(arrays["cells"]))
         return Mesh(arrays)
 
     def plot(self, name=None, **options):
-        """A picture of the plane rock or its fractures with an output or a field, see sprekk.plot.picture."""
+        """Draws an output or field of a 2D model on the rock or the fractures, see sprekk.plot.picture."""
         from .plot import picture
         return picture(self, name, **options)
 
     def check_jacobian(self):
-        """How far each part of the Jacobian is from differences of the residual, near the present state: for modules of
-        your own, a pandas.DataFrame."""
+        """Compares the Jacobian with differences of the residual near the present state, to verify modules.
+
+        Returns a pandas.DataFrame with the error of each part: module, row, column, error."""
         import pandas
         x = [np.array(self.field(name)) for name in self._handle.blocks()]
         errors = self._handle.jacobian_errors(x, self.time, max(self.time - self.scene.all_entries["Time"]["start"], 1e-300))
         return pandas.DataFrame(errors, columns=["module", "row", "column", "error"])
 
     def close(self):
-        """Frees the equations; arrays that were asked for keep their memory."""
+        """Frees the equations. The memory of existing arrays remains valid."""
         self._epoch.over = True
         self._handle.close()
 
@@ -254,7 +260,7 @@ class Model:
     def __repr__(self):
         return f"<sprekk.Model of {self.scene.name!r} at t = {self.time:g} s on {self.comm.size} ranks>"
 
-    # Own
+    # Internal
 
     def _renew(self):
         self._epoch.over = True
@@ -269,7 +275,7 @@ class Model:
         return report
 
     def _called(self, callback, step):
-        """What a callback returns; if it raises on a rank, an Error on all others."""
+        """Returns the result of the callback. An exception on one rank raises an Error on all others."""
         row = raised = None
         try:
             row = callback(self, step) if callback else None
@@ -285,7 +291,7 @@ class Model:
         return row
 
     def _output(self, name):
-        """Values and entity."""
+        """Returns an output and its entity."""
         outputs = self._handle.outputs()
         if name not in outputs:
             raise _sprekk.Error(f'there is no output "{name}", but ' + ", ".join(f'"{known}"' for known in outputs))
@@ -293,7 +299,7 @@ class Model:
         return values, entity
 
     def _named(self, name):
-        """An output or a field, and what it lives on."""
+        """Returns an output or a field, and its entity."""
         fields = self.fields
         outputs = self._handle.outputs()
         if name in outputs:
@@ -305,7 +311,7 @@ class Model:
                                                                                   sorted({*outputs, *fields})))
 
     def _gathered(self, values, ids, root):
-        """Those of all ranks by their numbers, each once."""
+        """Returns on `root` the values of all ranks in the order of ids, without duplicates."""
         parts = self.comm.gather((np.array(ids), np.array(values)), root)
         if parts is None:
             return None
@@ -314,7 +320,7 @@ class Model:
 
 
 class _Bar:
-    """A bar of progress, or none."""
+    """Progress bar, or no effect if not shown."""
 
     def __init__(self, shown):
         self.bar = None

@@ -1,4 +1,4 @@
-"""Terms and equations of your own, as functions of numpy arrays."""
+"""User-defined terms and equations, as functions of numpy arrays."""
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -6,9 +6,11 @@ import numpy as np
 
 @dataclass
 class State:
-    """Where a residual is asked for: the time t (s); rate (1/s), which is what rates are times what is stored more than
-    at the start of the step; and histories of the module, [entity that this rank owns, component], which commit() moves
-    on. Not to be kept."""
+    """State of a residual evaluation, valid during the call only.
+
+    t          time, s
+    rate       factor, 1/s, of the increments of stored quantities since the start of the step
+    histories  history variables {name: [owned entity, component]}, updated by Module.commit()"""
     t: float
     rate: float
     histories: dict
@@ -16,15 +18,15 @@ class State:
 
 @dataclass
 class Unknown:
-    """A field that a module adds, with one row for each unknown.
+    """Field of a module, with one row for each unknown.
 
-    entity          node, cell, fracture face or facet (what cells and fracture faces end in)
-    scale           the name of the typical size of its values
-    row             the size of its rows: {scale: factor}
+    entity          node, cell, fracture face or facet (facet: of cells, fracture faces, and ridges of these)
+    scale           name of the scale of its values
+    row             typical size of its rows: {scale: factor}
     local_group     "fracture face": eliminated with contact, face by face
-    condensed_into  the field that preconditioners eliminate it from, whose unknowns hardly couple among themselves
-    balance         its rows are balances of rates, which may differ by orders of magnitude
-    smooth          multigrid may coarsen it: its matrix takes constants to almost nothing"""
+    condensed_into  field from which preconditioners eliminate this one; requires weak coupling among its unknowns
+    balance         True: rows are balances of rates, which may differ by orders of magnitude
+    smooth          True: suitable for multigrid; the matrix maps constants to almost zero"""
     name: str
     entity: str
     components: int = 1
@@ -39,13 +41,15 @@ class Unknown:
 
 @dataclass
 class Block:
-    """A residual over all entities of a loop: cells, fracture faces (owned), fracture sides, fracture cells, boundary
-    faces or neighbours; those but fracture faces with ghosts, and each rank adds to the rows that it owns.
+    """Residual over all entities of a loop.
 
-    rows, columns  fields whose rows it adds to, and that these depend on
-    residual       residual(x, state) -> {row: [entity, unknown of the entity]}; x has {column: the same}
-    jacobian       jacobian(x, state) -> {(row, column): [entity, unknown of the row, of the column]}; absent: central
-                   differences, all entities at once"""
+    The loops are cells, fracture faces, fracture sides, fracture cells, boundary faces and neighbours. The fracture
+    faces are owned. The other loops include ghosts, and each rank adds to its owned rows.
+
+    rows, columns  fields of the rows, and fields that the residual depends on
+    residual       residual(x, state) -> {row: [entity, unknown of the entity]}, with x {column: array of this kind}
+    jacobian       jacobian(x, state) -> {(row, column): [entity, unknown of the row, of the column]}; default: central
+                   differences, for all entities at once"""
     loop: str
     rows: list
     columns: list
@@ -56,7 +60,7 @@ class Block:
         return self.jacobian(x, state) if self.jacobian else self.differences(x, state)
 
     def differences(self, x, state, step=6e-6):
-        """Central differences; a step is relative to the largest value of the column, at least 1e-12 of it."""
+        """Computes central differences with the increment step * max(max |column|, 1e-9)."""
         found = {}
         for column in self.columns:
             size = step * max(float(np.max(np.abs(x[column]), initial=0)), 1e-9)
@@ -73,47 +77,51 @@ class Block:
 
 
 class Module:
-    """Terms or equations that are solved for together with Sprekk's: a list of them is the argument `modules` of a Model.
-    Derive from it; what a module adds is in blocks(). docs/develop/embedding.md tells what the words mean."""
+    """Base class of user-defined terms or equations, for the argument `modules` of a Model.
+
+    Override blocks() to add residuals. For the terms see docs/develop/embedding.md."""
     name = "own module"
-    fingerprint = ""  # what must be the same where a checkpoint is restored
+    fingerprint = ""  # must be the same at the restart from a checkpoint
     unknowns = ()
-    scales = {}  # without loads, above zero
+    scales = {}  # {scale: magnitude without loads}, positive
     histories = {}  # {name: (entity, components)}
-    stores = False  # State.rate times what is stored
-    symmetric = False  # its Jacobian
-    merit = {}  # {own unknown: weight} of the squares of its rows in an energy, J; else 1/diagonal
+    stores = False  # True: rows contain State.rate * increments of stored quantities
+    symmetric = False  # True: symmetric Jacobian
+    merit = {}  # {own unknown: weight} of its squared rows in the merit, J; default 1/diagonal
 
     def blocks(self, mesh):
-        """Of a rank's part of the mesh, a Mesh with ghosts."""
+        """Returns the Blocks for the local Mesh, with ghosts."""
         return []
 
     def loads(self, t):
-        """The sizes of what it prescribes at time t, by the scales that they count for."""
+        """Returns the magnitudes of prescribed values at time t, {scale: magnitude}."""
         return {}
 
     def commit(self, state, x):
-        """Moves the histories on to what a step ended with: x has {column: [entity, unknown of it]} for each block."""
+        """Updates the histories after a step, with x {column: [entity, unknown of the entity]} of each block."""
 
 
 class FaceLaw(Module):
-    """What fractures bear along themselves by a law of your own, T(w, lambda), Pa, beside what the scene's friction bears:
-    closed faces of a joint with "friction coefficient" 0 bear T alone. It is the unknown "own shear" tau of each face,
+    """Shear traction T(w, lambda) of fractures, Pa, added to the friction of the scene.
+
+    With the friction coefficient 0, closed faces transmit T only. T is the unknown "own shear" tau of each face:
 
         tau - T(w, lambda) = 0,    |f| tau . d(w_t)/du in the rows of the displacement.
 
-    Derive from it and write shear(); with n = dim - 1 tangential components. A prototype: Sprekk's own laws
-    (docs/develop/add_a_law.md) are known to the solver, which does more for them where faces slide and part."""
+    Derive from this class and override shear(). The number of tangential components is n = dim - 1. The class serves
+    prototypes, since Newton's method does not use its contact state. For built-in laws see docs/develop/add_a_law.md."""
     name = "face law"
-    stiffness = 1e10  # of the rock about a face, Pa/m: the order of magnitude steers Newton's method
+    stiffness = 1e10  # order of the stiffness of the rock around a face, Pa/m, for the merit of Newton's method
 
     def shear(self, w, traction, state):
-        """T [face, n] at the jump w [face, dim], m, and the contact traction [face, dim], Pa, normal components first;
-        state.histories["jump"] is the jump at the start of the step, state.rate 1/dt."""
+        """Returns T [face, n], Pa, at the jump w [face, dim], m, and the contact traction [face, dim], Pa.
+
+        The normal component comes first. The jump at the start of the step is
+        state.histories["jump"]; state.rate is 1/dt."""
         raise NotImplementedError
 
     def shear_derivative(self, w, traction, state):
-        """dT/dw [face, n, dim] and dT/dlambda [face, n, dim]; as it is here, by central differences."""
+        """Returns dT/dw [face, n, dim] and dT/dlambda [face, n, dim]; here by central differences."""
         found = []
         for k, values in enumerate((w, traction)):
             step = 6e-6 * max(float(np.max(np.abs(values), initial=0)), 1e-9)
@@ -135,10 +143,10 @@ class FaceLaw(Module):
                       self.law_by),
                 Block("fracture sides", ["displacement", "side bubble"], ["own shear"], self.forces, self.forces_by)]
 
-    # The law: on faces that this rank owns
+    # Law: on owned faces
 
     def operators(self, n):
-        """dw/d(displacement, side bubble) of the first n faces: [face, dim, unknown]"""
+        """Returns dw/d(displacement, side bubble) of the first n faces, [face, dim, unknown] each."""
         frame, share = self.mesh.face_frame[:n], self.mesh.face_share[:n]
         sides = np.concatenate([-share, share], axis=1)  # [face, nodes of side - and +]
         bubbles = self.mesh.face_bubble[:n, None] * np.array([-1.0, 1.0])
@@ -162,10 +170,10 @@ class FaceLaw(Module):
     def commit(self, state, x):
         state.histories["jump"][:] = self.jump(x[0])
 
-    # What it does to the rock: on sides whose cell is on this rank
+    # Forces on the rock: on sides with their cell on this rank
 
     def pushes(self):
-        """|f| d(w_t)/d(displacement of the side's cell, its bubble): [side, unknown, n]"""
+        """Returns |f| d(w_t)/d(displacement of the side's cell, its bubble), [side, unknown, n] each."""
         mesh = self.mesh
         face, side = mesh.sides.T
         sign = np.where(side == 1, 1.0, -1.0) * mesh.face_area[face]

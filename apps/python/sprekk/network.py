@@ -1,4 +1,4 @@
-"""Fracture networks: from tables of traces, and their meshes."""
+"""Fracture networks: sets from tables of traces, and meshes."""
 import shutil
 import subprocess
 import sys
@@ -11,9 +11,11 @@ from . import _sprekk
 
 
 def traces(table, geometry="geometry", name=None):
-    """A set of fractures, for `network > fractures`, from a table with a row for each trace: a GeoDataFrame, a
-    pandas.DataFrame or a dict of columns. Geometries are shapely's LineStrings or lists of points [x, y]; names are
-    those of a column, or the index."""
+    """Returns a set of fractures for `network > fractures`, with one trace for each row of a table.
+
+    table     a GeoDataFrame, a pandas.DataFrame or a dict of columns
+    geometry  column with LineStrings of shapely or lists of points [x, y]
+    name      column with the names of the traces; default: the index"""
     lines = list(table[geometry])
     names = list(map(str, table[name] if name else getattr(table, "index", range(1, len(lines) + 1))))
     rows = {}
@@ -32,7 +34,7 @@ def needs_mesh(entries):
 
 
 def with_mesh(scene, comm=MPI.COMM_WORLD):
-    """The scene with the mesh of its network, which rank 0 makes with gmsh, as `./sprekk run` does."""
+    """Returns the scene with the mesh of its network. Rank 0 generates the mesh with gmsh. Collective."""
     folder = error = None
     if comm.rank == 0:
         folder = tempfile.TemporaryDirectory()
@@ -44,7 +46,7 @@ def with_mesh(scene, comm=MPI.COMM_WORLD):
     if error:
         raise _sprekk.Error(error)
     meshed = scene.changed({"Mesh file.path": f"{path}/network.msh"}, comm)
-    meshed._mesh_folder = folder  # which ends with the scene
+    meshed._mesh_folder = folder  # removed with the scene
     return meshed
 
 

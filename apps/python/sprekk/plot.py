@@ -1,14 +1,14 @@
-"""Pictures of plane models for notebooks; those of runs on disk are `./sprekk plot`."""
+"""Pictures of 2D models for notebooks. `./sprekk plot` draws runs on disk."""
 import numpy as np
 
 
 def picture(model, name=None, *, component=None, scale=0, axes=None, **options):
-    """The rock or its fractures coloured by an output, on this rank; returns matplotlib's axes.
+    """Draws the rock or the fractures of this rank with the colours of an output; returns axes of matplotlib.
 
-    name       an output; absent: the mesh with its fractures
-    component  of a vector; absent: its length
-    scale      of displacements that move the picture
-    options    of tripcolor or LineCollection"""
+    name       output or field; default: the mesh with its fractures
+    component  of a vector; default: the norm
+    scale      factor of the displacements in the picture
+    options    arguments of tripcolor or LineCollection"""
     import matplotlib.pyplot as plt
     from matplotlib.collections import LineCollection
     mesh = model.mesh

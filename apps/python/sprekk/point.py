@@ -1,4 +1,4 @@
-"""One point of a joint, driven along a path without a mesh, and fits of its entries to measured curves."""
+"""Point driver: one point of a joint on a path, without a mesh, and fits of its entries to measured curves."""
 import os
 
 import numpy as np
@@ -9,7 +9,7 @@ from .scene import merge, override_texts, plain
 
 
 class PointFailed(_sprekk.Error):
-    """A step has no state. `curve` holds those before."""
+    """Failure of a step of the point driver. `curve` contains the earlier steps."""
 
     def __init__(self, reason, curve):
         super().__init__(reason)
@@ -17,7 +17,7 @@ class PointFailed(_sprekk.Error):
 
 
 def point_entries(scene):
-    """Entries of a scene for points, from a file or a dict, and what opens messages."""
+    """Returns the entries of a point scene (file or dict), and its name in messages."""
     if isinstance(scene, (str, os.PathLike)):
         return _sprekk.read_entries(os.fspath(scene), MPI.COMM_SELF), os.fspath(scene)
     entries = {}
@@ -26,8 +26,10 @@ def point_entries(scene):
 
 
 def drive(scene, overrides=()):
-    """The states of the point of a scene (a file or entries with the sections Point and Materials): a pandas.DataFrame
-    with the columns of `./sprekk point`, in SI; of a scene with Specimens a dict of them. Raises PointFailed."""
+    """Computes the path of a point scene: a file or entries with the sections Point and Materials.
+
+    Returns a pandas.DataFrame with the columns of `./sprekk point`, in SI units. Scenes with Specimens return a dict
+    {specimen: DataFrame}. Raises PointFailed."""
     import pandas
     entries, name = point_entries(scene)
     curves = {}
@@ -39,15 +41,15 @@ def drive(scene, overrides=()):
 
 
 def fit(scene, measured, along, match, parameters):
-    """Entries of a joint for which the point follows a measured curve best, by least squares.
+    """Fits entries of a joint to a measured curve by least squares.
 
-    scene       of a point, as for drive()
-    measured    columns of numbers in SI, a dict or a pandas.DataFrame
-    along       the column that both are compared along, which increases, by the name of drive()
-    match       columns that are compared
-    parameters  {path of an entry: (start, low, high)}, the unit being that of the reference
+    scene       point scene, as in drive()
+    measured    columns in SI units, a dict or a pandas.DataFrame
+    along       increasing column, the common abscissa; named as in drive()
+    match       names of the compared columns
+    parameters  {path of an entry: (start, low, high)}, in the unit of the reference
 
-    Returns an Estimate: values, intervals of 95 % confidence, correlation; its `curve` is the fitted one."""
+    Returns an Estimate: values, 95 % confidence intervals, correlation, and the fitted `curve`."""
     from . import estimate
     entries, _ = point_entries(scene)
     match = [match] if isinstance(match, str) else list(match)
@@ -66,7 +68,7 @@ def fit(scene, measured, along, match, parameters):
                                for name in match])
 
     start = {path: value[0] for path, value in parameters.items()}
-    curve = drive(entries, start)  # what is wrong is told here
+    curve = drive(entries, start)  # raises errors of the input here
     if isinstance(curve, dict):
         raise _sprekk.Error("the scene has several specimens, must have one Point")
     for name in (along, *match):
@@ -79,7 +81,7 @@ def fit(scene, measured, along, match, parameters):
 
 
 def check_measured(measured, names):
-    """That the columns of these names are there, as finite numbers of one length."""
+    """Checks that the named columns exist and contain finite numbers of equal length."""
     length = None
     for name in names:
         try:
@@ -102,7 +104,7 @@ def check_measured(measured, names):
 
 
 def check_parameters(parameters):
-    """That each is (start, low, high) with low < high and start between them."""
+    """Checks that each parameter is (start, low, high) with low < high and low <= start <= high."""
     if not parameters:
         raise _sprekk.Error("parameters: has none, must have one or more: {path of an entry: (start, low, high)}")
     for path, limits in parameters.items():

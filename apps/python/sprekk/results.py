@@ -1,4 +1,4 @@
-"""What a run left in its folder, as tables."""
+"""Results of a run on disk, as tables."""
 import json
 from pathlib import Path
 
@@ -6,12 +6,12 @@ from . import _sprekk
 
 
 class Results:
-    """The folder of `./sprekk run` or of model.run(output=...).
+    """Output folder of `./sprekk run` or of model.run(output=...).
 
-    status     "completed", "interrupted" or "failed", then with a reason
-    steps      a pandas.DataFrame with the numbers of each step: time, newton_iterations, cuts, ...
-    fractures  the same of each set of fractures, with the index (time, fracture); vectors have a column per component
-    content    all of results.json"""
+    status     "completed", "interrupted" or "failed"; `reason` is the error message
+    steps      pandas.DataFrame with the numbers of each step: time, newton_iterations, cuts, ...
+    fractures  pandas.DataFrame with the index (time, fracture set); vectors have a column for each component
+    content    results.json as a dict"""
 
     def __init__(self, folder):
         self.folder = Path(folder)
@@ -36,13 +36,13 @@ class Results:
         return pandas.DataFrame(list(rows.values()), index=index)
 
     def probe(self, name):
-        """The table of a probe, an xarray.Dataset with units and dimensions."""
+        """Returns the data of a probe, an xarray.Dataset with units and dimensions."""
         import xarray
         return xarray.open_dataset(self.folder / "probes.h5", group=name, engine="h5netcdf")
 
 
 def flat(numbers, before=""):
-    """(name, number) of nested dicts and lists: "mean_jump_local_0"."""
+    """Yields (name, number) of nested dicts and lists, with names such as "mean_jump_local_0"."""
     for key, value in numbers.items() if isinstance(numbers, dict) else enumerate(numbers):
         if isinstance(value, (dict, list)):
             yield from flat(value, f"{before}{key}_")

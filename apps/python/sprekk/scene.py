@@ -1,4 +1,4 @@
-"""Scenes: from files, from text, or from entries in Python."""
+"""Scenes from files, XML text or Python entries."""
 import os
 from collections.abc import Mapping
 
@@ -8,14 +8,14 @@ from . import _sprekk
 
 
 class Scene:
-    """A scene, checked as the program checks it: what is wrong is an Error in its words.
+    """Validated scene. Invalid input raises an Error with the message of `./sprekk check`.
 
-    source     the path of an XML file, XML as text, or entries: a dict of sections and values, {"Time": {"steps": 3}},
-               or an object of sprekk.entries. Values are numbers, texts ("30 GPa", "1e-3*t") or lists of these
-    overrides  entries that are other than in the source, {"Time.steps": 3}, or texts "Time.steps=3"
-    comm       ranks that read it together
-    folder     where its files are, of a source that is no file
-    name       opens messages, likewise"""
+    source     path of an XML file, XML text, a dict of sections and entries such as {"Time": {"steps": 3}}, or an
+               object of sprekk.entries. Values are numbers, strings ("30 GPa", "1e-3*t") or lists of these
+    overrides  changed entries, {"Time.steps": 3} or a list of strings "Time.steps=3"
+    comm       communicator; its ranks read the scene together
+    folder     base of relative paths, for sources other than files
+    name       name in messages, for sources other than files"""
 
     def __init__(self, source, overrides=(), *, comm=MPI.COMM_WORLD, folder="", name="scene"):
         texts = override_texts(overrides)
@@ -32,17 +32,17 @@ class Scene:
 
     @property
     def entries(self):
-        """What is given, as a dict."""
+        """Given entries, as a nested dict."""
         return self._handle.entries()
 
     @property
     def all_entries(self):
-        """All that could be given, with defaults, as a dict."""
+        """All possible entries with defaults, as a nested dict."""
         return self._handle.effective()
 
     @property
     def times(self):
-        """The ends of its steps; if their length is chosen, of those that must be met."""
+        """Ends of the steps, s. With adaptive steps: the times that must be met."""
         return self._handle.times()
 
     @property
@@ -50,11 +50,11 @@ class Scene:
         return self._handle.origin
 
     def to_xml(self, defaults=False):
-        """As text that a file may hold."""
+        """Returns the XML text of the scene; with defaults=True, of all entries."""
         return self._handle.effective_xml() if defaults else self._handle.xml()
 
     def changed(self, overrides, comm=MPI.COMM_WORLD):
-        """The same with other entries: {"Materials.joint.friction coefficient": 0.3}; a dict as value is a section."""
+        """Returns a changed Scene, e.g. with {"Materials.joint.friction coefficient": 0.3}; a dict changes a section."""
         sections = {path: value for path, value in dict(overrides).items() if is_section(value)}
         entries = self.entries
         for path, value in sections.items():
@@ -71,12 +71,12 @@ def is_section(value):
 
 
 def plain(value):
-    """Entries without the types of numpy and of sprekk.entries; what is None is left out."""
+    """Converts values of numpy and sprekk.entries to plain Python values, without None."""
     if hasattr(value, "to_entries"):
         value = value.to_entries()
     if isinstance(value, Mapping):
         return {name: plain(inner) for name, inner in value.items() if inner is not None}
-    if hasattr(value, "tolist"):  # of numpy
+    if hasattr(value, "tolist"):  # numpy types
         value = value.tolist()
     if isinstance(value, (list, tuple)):
         return [plain(inner) for inner in value]
@@ -94,7 +94,7 @@ def merge(entries, path, section):
 
 
 def override_texts(overrides):
-    """As the program takes them, "Path.to.entry=value"."""
+    """Returns the overrides as strings "Path.to.entry=value"."""
     if isinstance(overrides, Mapping):
         return [f"{path}={value_text(plain(value))}" for path, value in overrides.items()]
     return [overrides] if isinstance(overrides, str) else list(overrides)

@@ -1,24 +1,23 @@
-"""Derivatives of a quantity with respect to entries of a scene, by one solve with the transposed system."""
+"""Derivatives of a quantity with respect to entries of a scene, by an adjoint solve."""
 import numpy as np
 
 from . import _sprekk
 from .model import Model
 
-STEP = 1e-6  # relative, of central differences of the residual
+STEP = 1e-6  # relative increment of central differences of the residual
 
 
 def sensitivities(model, t, quantity, parameters):
-    """Takes the step to t, and returns (q, {path: dq/dparameter}) of q = quantity(x), x being the unknowns at the end of
-    the step and the state at its beginning given.
+    """Computes the step to t, s. Returns q = quantity(x) and {parameter: dq/dparameter} for the unknowns x at its end.
 
-    With R(x, m) = 0 the equations of the step and A = dR/dx, the adjoint is A^T y = (dq/dx)^T, and
-        dq/dm = - y . dR/dm.
-    A is the Jacobian that Newton's method uses, y one sparse solve on rank 0 for all parameters; dR/dm is a central
-    difference of R at fixed x, which needs no solve.
+    The state at the beginning of the step is fixed. With the equations R(x, m) = 0 of the step and A = dR/dx:
+        A^T y = (dq/dx)^T,   dq/dm = - y . dR/dm.
+    A is the Jacobian of Newton's method. One sparse solve on rank 0 gives y for all parameters. dR/dm is a central
+    difference of R at fixed x, without further solves. Collective.
 
-    quantity    called with {name of an unknown: values [entity, component] of the whole mesh in the numbers of the
-                unknowns}; returns q and {name: dq/dvalues}. On rank 0 alone
-    parameters  paths of entries that are numbers, "Materials.rock.Young's modulus"; of lists, (path, index)"""
+    quantity    function of {unknown: values [entity, component] of the whole mesh, in the order of the unknowns};
+                returns q and {unknown: dq/dvalues}. Called on rank 0 only
+    parameters  paths of numerical entries, "Materials.rock.Young's modulus"; for lists (path, index)"""
     if model._made_with["given_pressure"] is not None:
         raise _sprekk.Error("a pressure that is given from outside is no entry of the scene: its part in derivatives is not known")
     begin, before = model.time, {name: np.array(model.field(name)) for name in model.fields}
@@ -27,7 +26,7 @@ def sensitivities(model, t, quantity, parameters):
     x = [np.array(model.field(name)) for name in names]
 
     def twin(scene):
-        """A model of another scene in the state where the step began."""
+        """Returns a model of another scene in the state at the beginning of the step."""
         other = Model(scene, model.comm, **model._made_with)
         for name, values in before.items():
             other.field(name)[:] = values
@@ -54,7 +53,7 @@ def sensitivities(model, t, quantity, parameters):
 
 
 def _entry(scene, path):
-    """The number, or numbers, of an entry."""
+    """Returns the number, or the list of numbers, of an entry."""
     entries, rest = scene.all_entries, path
     while isinstance(entries, dict):
         name = max((name for name in entries if rest == name or rest.startswith(name + ".")), key=len, default=None)
@@ -69,7 +68,7 @@ def _entry(scene, path):
 
 
 def _quantity(model, names, x, owned, n, quantity):
-    """q on all ranks, and dq/dx on rank 0."""
+    """Returns q on all ranks, and dq/dx on rank 0."""
     comm, fields = model.comm, model.fields
     parts = comm.gather((x, owned))
     value = right = None
@@ -87,7 +86,7 @@ def _quantity(model, names, x, owned, n, quantity):
             right = np.zeros(n)
             for name, derivative in gradient.items():
                 right[place[name]] += derivative
-        except Exception as raised:  # the other ranks must not wait
+        except Exception as raised:  # caught, since the other ranks wait in bcast
             error = f"{type(raised).__name__}: {raised}"
     error, value = comm.bcast((error, value))
     if error:
@@ -96,7 +95,7 @@ def _quantity(model, names, x, owned, n, quantity):
 
 
 def _adjoint(comm, rows, columns, entries, n, right):
-    """y of A^T y = right, on all ranks."""
+    """Returns the solution y of A^T y = right, on all ranks."""
     parts = comm.gather((rows, columns, entries))
     y = None
     if parts is not None:
@@ -104,7 +103,7 @@ def _adjoint(comm, rows, columns, entries, n, right):
         from scipy.sparse.linalg import splu
         rows, columns, entries = (np.concatenate(part) for part in zip(*parts))
         A = coo_matrix((entries, (rows, columns)), (n, n)).tocsc()
-        # rows and columns of lengths and stresses are brought to one size
+        # scale rows and columns, since their units differ
         by_row = 1 / np.maximum(abs(A).max(axis=1).toarray().ravel(), 1e-300)
         A = diags(by_row) @ A
         by_column = 1 / np.maximum(abs(A).max(axis=0).toarray().ravel(), 1e-300)

@@ -1,4 +1,4 @@
-"""Parameter studies: a scene with many values of its entries, over a pool of processes, resumable."""
+"""Parameter studies in parallel processes. Interrupted studies can continue."""
 import hashlib
 import itertools
 import json
@@ -18,17 +18,18 @@ ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_d
 
 
 def sweep(scene, parameters, measure, *, processes=None, folder=None, progress=False):
-    """Runs a scene with all combinations of values and returns a table, pandas.DataFrame: a row for each, with what
-    `measure` told, and in the column "error" why a run failed.
+    """Runs a scene with all combinations of values. Returns a pandas.DataFrame with a row for each combination.
 
         sprekk.sweep("scene.xml", {"Materials.joint.friction coefficient": [0.4, 0.6]}, "study.py:measure", processes=4)
 
+    The columns are the values of the parameters and the results of `measure`; "error" is the message of a failed run.
+
     parameters  {path of an entry: values}, or a list of {path: value}
-    measure     called as measure(model) after the last step, in a process of its own; returns a dict of numbers. A
-                function of a module or a script, or its name, "script.py:function" or "module:function"
-    processes   how many run at a time; absent: as many as there are processors
-    folder      keeps each result under the fingerprint of its scene and measure: what is there is not run again
-    progress    show a bar (tqdm)"""
+    measure     function measure(model) -> dict of numbers, called after the last step in a separate process; a function
+                of a module or script, or its name, "script.py:function" or "module:function"
+    processes   number of simultaneous runs; default: number of available processors
+    folder      stores each result under a checksum of scene and measure; existing results are not computed again
+    progress    True shows a progress bar (tqdm)"""
     import pandas
     base = scene if isinstance(scene, Scene) else Scene(scene, comm=MPI.COMM_SELF)
     cases = combinations(parameters)
@@ -51,7 +52,7 @@ def combinations(parameters):
 
 
 def name_of(function):
-    """What a new process finds a function by."""
+    """Returns the name by which a new process imports the function."""
     module, name = function.__module__, function.__qualname__
     file = getattr(sys.modules.get(module), "__file__", None)
     if "<" in name or (module == "__main__" and not file):
@@ -61,7 +62,7 @@ def name_of(function):
 
 
 def run_case(base, case, measure, folder):
-    """The row of one case, from the folder if it is there."""
+    """Returns the row of one case, from the folder if it exists there."""
     try:
         scene = base.changed(case, MPI.COMM_SELF)
     except _sprekk.Error as error:
@@ -79,13 +80,13 @@ def run_case(base, case, measure, folder):
 
 
 def source_of(measure):
-    """The text of a script, so that another one is run anew."""
+    """Returns the text of a script for the checksum, so that a changed script is run again."""
     script = measure.rpartition(":")[0]
     return Path(script).read_text() if script.endswith(".py") else ""
 
 
 def surroundings():
-    """The environment of a process that is no rank of this one, and finds what this one does."""
+    """Returns the environment of an independent process, with the import path of this one and without its MPI rank."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_", "PMI_"))}
     kept.update({name: value for name, value in os.environ.items() if name.startswith(("OMPI_MCA_pml", "OMPI_MCA_btl",
                                                                                        "OMPI_ALLOW"))})
@@ -105,7 +106,7 @@ def function_of(name):
 
 
 def main(scene, measure, result):
-    """One case; the result is there as a whole or not at all."""
+    """Runs one case and writes the result atomically."""
     from .model import Model
     try:
         model = Model(Scene(scene, comm=MPI.COMM_SELF), MPI.COMM_SELF)
