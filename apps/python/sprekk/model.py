@@ -62,7 +62,7 @@ class Model:
         self._handle.take_back()
 
     def change(self, changed):
-        """Replaces the scene, or entries such as {"Bulk.gravity": [0, -9.81]}. The state persists; fields become stale."""
+        """Replaces the scene, or entries such as {"Bulk.gravity": [0, -9.81]}. Keeps the state; invalidates fields."""
         scene = changed if isinstance(changed, Scene) else self.scene.changed(changed, self.comm)
         self._handle.change(scene._handle)
         self.scene = scene
@@ -216,7 +216,7 @@ class Model:
         mesh, arrays = self.mesh, self._handle.mesh()
         n = mesh.n_owned_cells
         arrays["cells"] = mesh.node_id[mesh.cells]
-        arrays["face_nodes"] = mesh.node_id[np.where(mesh.faces < 0, mesh.faces[:, :1], mesh.faces)]  # side + absent
+        arrays["face_nodes"] = mesh.node_id[np.where(mesh.faces < 0, mesh.faces[:, :1], mesh.faces)]  # no local side +
         for ids, count, names in ((mesh.node_id, len(mesh.node_id), ("coordinates", "node_id")),
                                   (mesh.cell_id, n, ("cells", "cell_region", "cell_id")),
                                   (mesh.face_id, len(mesh.face_id), [name for name in arrays if isinstance(

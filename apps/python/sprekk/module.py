@@ -109,7 +109,7 @@ class FaceLaw(Module):
         tau - T(w, lambda) = 0,    |f| tau . d(w_t)/du in the rows of the displacement.
 
     Derive from this class and override shear(). The number of tangential components is n = dim - 1. The class serves
-    prototypes, since Newton's method does not use its contact state. For built-in laws see docs/develop/add_a_law.md."""
+    prototypes: Newton's method does not use its contact state. Built-in laws: docs/develop/add_a_law.md."""
     name = "face law"
     stiffness = 1e10  # order of the stiffness of the rock around a face, Pa/m, for the merit of Newton's method
 

@@ -54,7 +54,7 @@ class Scene:
         return self._handle.effective_xml() if defaults else self._handle.xml()
 
     def changed(self, overrides, comm=MPI.COMM_WORLD):
-        """Returns a changed Scene, e.g. with {"Materials.joint.friction coefficient": 0.3}; a dict changes a section."""
+        """Returns a changed Scene, e.g. {"Materials.joint.friction coefficient": 0.3}; a dict changes a section."""
         sections = {path: value for path, value in dict(overrides).items() if is_section(value)}
         entries = self.entries
         for path, value in sections.items():
