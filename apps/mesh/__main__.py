@@ -1,7 +1,7 @@
-"""Makes the mesh of a fracture network that a scene describes in its section `Mesh file > network`.
+"""Generates the mesh of a fracture network, as described by the section `Mesh file > network` of a scene.
 
-FILE is a mesh for gmsh and Sprekk; FILE.json beside it reports what the mesh is like and what was repaired. A mesh that is
-there and was made of the same description is kept."""
+FILE is a mesh for gmsh and Sprekk. FILE.json contains statistics of the mesh and the repairs of the network. An
+existing mesh of the same description remains unchanged."""
 import argparse
 import hashlib
 import json
@@ -13,7 +13,7 @@ from pathlib import Path
 from progress import doing
 from shapes import NetworkError
 
-MOST_DRAWN = 0.2  # of the fractures at random may be drawn again: more are too dense to be what was asked for
+MOST_DRAWN = 0.2  # maximum share of random fractures drawn again; a larger share would change the statistics
 
 
 def arguments(words):
@@ -22,14 +22,14 @@ def arguments(words):
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="the mesh, NAME.msh")
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="override an entry of the scene; may be repeated")
     parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the mesh, too")
-    parser.add_argument("--run", action="store_true", help=argparse.SUPPRESS)  # on behalf of a run into the mesh's folder
+    parser.add_argument("--run", action="store_true", help=argparse.SUPPRESS)  # for a run with this mesh folder
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors and, now and then, what takes long")
-    parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # sprekk itself, by the launcher
+    parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # path of the program, set by the launcher
     return parser.parse_args(words)
 
 
 def description(options):
-    """The network as the program reads it, which checks names, units and bounds."""
+    """Returns the network as XML, with names, units and bounds checked by the program."""
     command = [options.program, "network", options.scene, *(word for entry in options.set for word in ("--set", entry))]
     done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     if done.returncode:
@@ -38,7 +38,7 @@ def description(options):
 
 
 def fingerprint(text, files):
-    """Of everything that the mesh depends on."""
+    """Returns the checksum of all data that determine the mesh."""
     import gmsh
     import numpy
     import shapely
@@ -49,7 +49,7 @@ def fingerprint(text, files):
 
 
 def is_made(mesh, report, print_of_input):
-    """Whether the mesh is there, whole, and of the same input."""
+    """Returns whether a complete mesh of the same input exists."""
     try:
         known = json.loads(report.read_text())
         return known["input"] == print_of_input and known["mesh"] == hashlib.sha256(mesh.read_bytes()).hexdigest()
@@ -58,7 +58,7 @@ def is_made(mesh, report, print_of_input):
 
 
 def made(network):
-    """Plan, sizes and mesh."""
+    """Returns plan, sizes and mesh."""
     import checks
     import mesher
     from plan import Plan
@@ -74,7 +74,9 @@ def made(network):
 
 
 def made_of(text, network):
-    """The same. Fractures at random that cannot be meshed with others are drawn again, the last one of those in each other's way."""
+    """Returns plan, sizes and mesh, where random fractures may be drawn again.
+
+    If fractures cannot be meshed together, the last random one of each conflict is drawn again."""
     from description import Network
     again = {}
     while True:
@@ -121,16 +123,16 @@ def make(options):
 
 
 def end_results(path, reason):
-    """Results of an earlier run do not pass for those of one that has no mesh."""
+    """Overwrites results.json, so that results of an earlier run are not taken for those of the failed run."""
     try:
         if path.exists():
             path.write_text(json.dumps({"status": "failed", "reason": reason, "steps": []}, indent=1) + "\n")
-    except OSError:  # the reason is told in any case
+    except OSError:  # the error message is printed in any case
         pass
 
 
 def in_words(error, scene):
-    """A line for each thing that is wrong, which opens with a file."""
+    """Returns one line for each error, with the name of a file in front."""
     opens = tuple(getattr(error, "files", ())) + (scene,)
     return "\n".join(line if line.startswith(opens) else f"{scene}: {line}" for line in str(error).splitlines())
 
@@ -139,7 +141,7 @@ def main(words=None):
     options = arguments(words)
     try:
         told = make(options)
-    except Exception as error:  # one line for whatever shapely or gmsh throw, too
+    except Exception as error:  # includes exceptions of shapely and gmsh
         if isinstance(error, OSError):
             error = NetworkError(f"{error.filename or options.output}: {error.strerror or error}")
         elif not isinstance(error, NetworkError):

@@ -1,15 +1,17 @@
-"""Segments in space cut where they meet: points and edges of a graph in which edges meet at their ends only."""
+"""Cuts segments in space where they meet. The result is a graph of points and edges that meet only at their ends."""
 from collections import defaultdict
 
 import numpy as np
 from shapes import NetworkError
 
-MOST_PAIRS = 5 * 10**6  # of edges that are compared: some gigabytes
+MOST_PAIRS = 5 * 10**6  # of edges that may be close; some gigabytes
 MOST_CROSSINGS = 2 * 10**5  # some minutes
 
 
 def near_pairs(low, high, reach):
-    """Pairs i < j of boxes that are closer than `reach` in every direction: two arrays. Refuses more than MOST_PAIRS."""
+    """Returns the pairs i < j, as two arrays, of boxes closer than `reach` in every direction.
+
+    Error beyond MOST_PAIRS."""
     order = np.argsort(low[:, 0], kind="stable")
     low, high = low[order] - 0.5 * reach, high[order] + 0.5 * reach
     last = np.searchsorted(low[:, 0], high[:, 0], side="right")
@@ -28,7 +30,7 @@ def near_pairs(low, high, reach):
 
 
 def on_segment(points, begin, end):
-    """The place t in [0, 1] on each segment that is nearest to its point, and the distance to it."""
+    """Returns the nearest position t in [0, 1] on each segment to its point, and the distance."""
     along = end - begin
     square = np.einsum("ij,ij->i", along, along)
     t = np.clip(np.einsum("ij,ij->i", points - begin, along) / np.where(square > 0, square, 1), 0, 1)
@@ -36,7 +38,7 @@ def on_segment(points, begin, end):
 
 
 def closest(a, b):
-    """For pairs of segments (n, 2, 3): the places s, t on both that are nearest to each other, and the distance."""
+    """Returns the nearest positions s, t in [0, 1] on pairs of segments (n, 2, 3), and the distance."""
     u, v, w = a[:, 1] - a[:, 0], b[:, 1] - b[:, 0], a[:, 0] - b[:, 0]
     uu, uv, vv, uw, vw = (np.einsum("ij,ij->i", p, q) for p, q in ((u, u), (u, v), (v, v), (u, w), (v, w)))
     det = uu * vv - uv * uv
@@ -56,7 +58,9 @@ def closest(a, b):
 
 
 def merged(points, tolerance):
-    """For each point the first of those that it is joined with: chains of points closer than the tolerance."""
+    """Returns for each point the first point of its cluster.
+
+    Points closer than the tolerance are in the same cluster."""
     owner = np.arange(len(points))
 
     def find(k):
@@ -71,17 +75,17 @@ def merged(points, tolerance):
 
 
 class Graph:
-    """Points (n, 3), and edges {(a, b): numbers of the features that they belong to} with a < b; what was joined."""
+    """Points (n, 3), and edges {(a, b): indices of their features} with a < b. `joined` lists the joined features."""
 
     def __init__(self, points, edges, joined=()):
         self.points, self.edges = points, edges
-        self.joined = list(joined)  # (gap, features of one, features of the other)
+        self.joined = list(joined)  # (gap in m, indices of features, indices of features)
 
     def segments(self):
         return self.points[np.array(list(self.edges), int).reshape(-1, 2)]
 
     def parents_at(self):
-        """[point] numbers of all features whose edges end there."""
+        """Returns for each point the indices of all features with an edge at this point."""
         parents = defaultdict(set)
         for (a, b), of in self.edges.items():
             parents[a] |= of
@@ -90,11 +94,11 @@ class Graph:
 
 
 def cut(segments, parents, tolerance):
-    """One round: cuts segments where others meet them, joins points, and joins segments that are then the same."""
+    """Returns the graph of one round: cuts segments where they meet, joins points, merges duplicate edges."""
     i, j = near_pairs(segments.min(axis=1), segments.max(axis=1), 2 * tolerance)
     points, joined, noise = [segments.reshape(-1, 3)], [], 1e-10 * np.ptp(segments.reshape(-1, 3), axis=0).max()
     chains = [[(0.0, 2 * k), (1.0, 2 * k + 1)] for k in range(len(segments))]
-    for one, other in ((i, j), (j, i)):  # ends of one on the other
+    for one, other in ((i, j), (j, i)):  # end points of one segment on the other
         for end in (0, 1):
             t, gap = on_segment(segments[one, end], segments[other, 0], segments[other, 1])
             for k in np.flatnonzero(gap <= tolerance):
@@ -128,8 +132,9 @@ def cut(segments, parents, tolerance):
 
 
 def arrange(segments, parents, tolerance, rounds=10):
-    """The graph of segments (n, 2, 3), each with a set of numbers of its features. Where joining moves an edge onto
-    others these are joined in a further round."""
+    """Returns the graph of segments (n, 2, 3), each with a set of feature indices.
+
+    Joined points may move an edge onto another one. Further rounds merge these edges."""
     graph = cut(segments, parents, tolerance)
     for _ in range(rounds):
         again = cut(graph.segments(), list(graph.edges.values()), tolerance)

@@ -1,4 +1,4 @@
-"""What is too close in a network to be meshed: refused with the names of both fractures."""
+"""Checks a network for distances and angles that are too small for a mesh. The errors name both fractures."""
 import numpy as np
 from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
@@ -6,7 +6,7 @@ from shapes import Errors, at
 
 
 def names(plan, one, other):
-    """Names of two features of which at least one is a fracture, or None where that is not so."""
+    """Returns the names of two features, at least one a fracture, or None if there is no such pair."""
     one, other = set(one), set(other)
     one, other = one - other or one, other - one or other
     pairs = [(plan.owners[a], plan.owners[b]) for a in sorted(one) for b in sorted(other)]
@@ -17,7 +17,7 @@ def names(plan, one, other):
 
 
 def both(pair):
-    """Two fractures, or parts of one, in words."""
+    """Returns the names of two fractures, or of parts of one, for messages."""
     return f"{pair[0]} and {pair[1]}" if pair[0] != pair[1] else f"parts of {pair[0]}"
 
 
@@ -30,7 +30,7 @@ def too_close(plan, pair, gap, where):
 
 
 def close_edges(plan):
-    """Of edges that share no point, and of points that are the ends of one edge."""
+    """Yields errors (names, message) of close edges without a common point, and of close end points of one edge."""
     reach, segments, ends = plan.network.minimum_distance, plan.graph.segments(), np.array(list(plan.edges))
     owners = list(plan.edges.values())
     i, j = near_pairs(segments.min(axis=1), segments.max(axis=1), reach)
@@ -50,7 +50,7 @@ def close_edges(plan):
 
 
 def close_surfaces(plan):
-    """Of points over surfaces that they are not on."""
+    """Yields errors (names, message) of points close to a surface that they do not belong to."""
     at = plan.graph.parents_at()
     reach, points = plan.network.minimum_distance, plan.points
     for k, surface in enumerate(plan.surfaces):
@@ -68,8 +68,9 @@ def close_surfaces(plan):
 
 
 def folds(plan):
-    """Of fractures that come close to themselves: of segments one after the other that meet at a small angle, and of others
-    that are close in space but, along the line or around the polygon, not."""
+    """Yields errors (names, message) of fractures that come close to themselves.
+
+    These are small angles between consecutive segments, and close segments that are far apart along the line."""
     for fracture in plan.network.fractures:
         ring, pair = plan.dim == 3 or (fracture.points[0] == fracture.points[-1]).all(), (fracture.name, fracture.name)
         x = np.concatenate([fracture.points, fracture.points[:1]]) if plan.dim == 3 else fracture.points
@@ -82,7 +83,7 @@ def folds(plan):
 
 
 def corner_angles(x, ring):
-    """Angles (degree) between segments that follow each other: 180 where a line goes straight on."""
+    """Returns the angles, in degrees, between consecutive segments; 180 for a straight line."""
     back = x[:-1] - x[1:]
     back /= np.linalg.norm(back, axis=1)[:, None]
     one, other = (back, -np.roll(back, -1, axis=0)) if ring else (back[:-1], -back[1:])
@@ -90,8 +91,9 @@ def corner_angles(x, ring):
 
 
 def self_approaches(x, ring, tolerance, reach):
-    """(distance, point) where a polyline x comes closer to itself than `reach` over a detour of more than twice as much;
-    what is within the tolerance is joined."""
+    """Yields (distance, point) where the polyline x comes closer to itself than `reach`.
+
+    The path between both points must be longer than twice `reach`. Distances within the tolerance are not reported."""
     begin, end = x[:-1], x[1:]
     length = np.linalg.norm(end - begin, axis=1)
     at = np.concatenate([[0], np.cumsum(length)])
@@ -99,7 +101,7 @@ def self_approaches(x, ring, tolerance, reach):
     apart = (j > i + 1) & ~(ring & (i == 0) & (j == len(length) - 1))
     i, j = i[apart], j[apart]
     for one, other in ((i, j), (j, i)):
-        near = np.minimum(2 * reach / length[one], 1)  # so far from its ends, and at them
+        near = np.minimum(2 * reach / length[one], 1)  # positions at and near both ends
         for s in (0 * near, near, 1 - near, 0 * near + 1):
             point = begin[one] + s[:, None] * (end - begin)[one]
             t, gap = on_segment(point, begin[other], end[other])
@@ -114,7 +116,7 @@ def small_angle(plan, pair, angle):
 
 
 def small_angles(plan):
-    """Of edges of different fractures at a point, 2D."""
+    """Yields errors (names, message) of small angles between edges of different fractures at a point, in 2D."""
     at, minimum = {}, plan.network.minimum_angle
     for (a, b), of in plan.edges.items():
         along = plan.points[b] - plan.points[a]
@@ -130,7 +132,7 @@ def small_angles(plan):
 
 
 def lying_on(plan):
-    """Of edges of two fractures, 2D, or of one and the boundary."""
+    """Yields errors (names, message) of edges shared by two fractures, or a fracture and the boundary, in 2D."""
     for of in plan.edges.values():
         fractures = plan.fractures_of(of)
         side = next((plan.owners[k] for k in of if plan.owners[k].kind == "boundary"), None)
@@ -144,7 +146,7 @@ def lying_on(plan):
 
 
 def check(plan):
-    """Refuses what is wrong, once for each two features."""
+    """Raises the errors of all checks, one line for each pair of features."""
     found = list(folds(plan)) + (list(lying_on(plan)) + list(small_angles(plan)) if plan.dim == 2 else [])
     found = found or list(close_edges(plan)) + (list(close_surfaces(plan)) if plan.dim == 3 else [])
     first = {}

@@ -1,4 +1,4 @@
-"""A network as `sprekk network` prints it: fractures and bodies as features."""
+"""Fractures and bodies of a network as features, from the output of `sprekk network`."""
 import csv
 import os
 import xml.etree.ElementTree as xml
@@ -14,58 +14,60 @@ from shapes import MOST, Errors, Feature, NetworkError, at, ellipse, refuse
 from tables import Table, has_points, read_table
 
 MOST_FRACTURES = 10**5
-MOST_DIAGONALS = 1e6  # of the domain, from its centre to a point of a fracture
+MOST_DIAGONALS = 1e6  # largest distance of a point from the centre of the domain, in diagonals
 
 READ = {"int": int, "double": float, "bool": lambda text: text == "true", "string": str}
 
 
 def value(kind, text):
     if kind.startswith("Array("):
-        inner = text.strip()[1:-1].strip()  # strings with commas are in quotes
+        inner = text.strip()[1:-1].strip()  # strings with commas are quoted
         return [READ[kind[6:-1]](part.strip()) for part in next(csv.reader([inner], skipinitialspace=True))] if inner else []
     return READ[kind](text)
 
 
 def as_dictionary(element):
-    """A parameter list with its sections."""
+    """Returns a parameter list as a nested dict."""
     return {child.get("name"): as_dictionary(child) if child.tag == "ParameterList" else value(child.get("type"), child.get("value"))
             for child in element}
 
 
 def as_known(path):
-    """A path as people know it."""
+    """Returns the path relative to the current folder if it is inside, for messages."""
     relative = os.path.relpath(path)
     return path if relative.startswith("..") else relative
 
 
 def opened(ring):
-    """The corners of a polygon, of which the last may repeat the first."""
+    """Returns the corners of a polygon without a repeated first corner."""
     return ring[:-1] if len(ring) > 3 and (ring[0] == ring[-1]).all() else ring
 
 
 def printable(properties):
-    """Texts as files of gmsh have them, in quotation marks. Whether one is an entry of a joint, the program says."""
+    """Replaces quotation marks and unprintable characters, as required by files of gmsh.
+
+    The program checks the entries."""
     def clean(text):
         return "".join(c if c.isprintable() else " " for c in text.replace('"', "'"))
     return {clean(title): clean(text) for title, text in properties.items()}
 
 
 def free_names(name, features):
-    """`name` with the numbers from 1 on that no feature has."""
+    """Yields `name 1`, `name 2`, ... except names of existing features."""
     taken = {feature.single for feature in features}
     return (one for one in (f"{name} {k}" for k in count(1)) if one not in taken)
 
 
 class Network:
-    """What a mesh is to be made of."""
+    """Domain, regions, fractures, constraints and sizes of a network."""
 
     def __init__(self, text, again=None):
-        """`again` {name of a fracture at random: how often it is drawn again}."""
+        """`again` {name of a random fracture: number of repeated draws}."""
         self.again, self.at_random = again or {}, []
         self.entries = as_dictionary(xml.fromstring(text))
-        self.files = []  # that it was read from
+        self.files = []  # input files
         self.leaves_out = self.entries.get("unusable fractures") == "left out"
-        self.left_out = []  # lines for the report
+        self.left_out = []  # lines of the report
         self.tables = {(kind, name): self.table(content) for kind in ("fractures", "constraints")
                        for name, content in self.entries.get(kind, {}).items() if "file" in content}
         self.domain = self.body("domain", self.domain_entries(), "boundary")
@@ -80,7 +82,7 @@ class Network:
         self.check_dimensions()
         self.check_reach()
         self.set_sizes()
-        self.joined = self.left_out + joined_parts(self.fractures, self.dim, self.tolerance)  # lines for the report
+        self.joined = self.left_out + joined_parts(self.fractures, self.dim, self.tolerance)  # lines of the report
 
     def place(self, path):
         return f"Sprekk > Mesh file > network > {path}"
@@ -149,7 +151,7 @@ class Network:
         return found
 
     def check_boxes(self):
-        """Files that tell a domain must mean that of the scene."""
+        """Checks that domains given by files are equal to that of the scene."""
         for (section, name), table in self.tables.items():
             other = table.box and abs(np.array(table.box) - (self.domain.low, self.domain.high)).max() > 1e-9 * self.domain.size
             if other:
@@ -159,7 +161,7 @@ class Network:
                 raise NetworkError(f"{as_known(path)}: tells of a domain from {said}, the scene's is {known}; leave one out", [as_known(path)])
 
     def check_names(self):
-        """Groups of the mesh must be told apart, in files of gmsh, too."""
+        """Checks that the groups of the mesh have different names, valid in files of gmsh."""
         sides = {side.group for side in self.domain.sides}
         for name in (*sides, *self.entries["fractures"], *self.entries["regions"]):
             if '"' in name or not name.isprintable():
@@ -171,7 +173,9 @@ class Network:
             raise NetworkError(f"{self.place('regions > bulk')}: is the name of the rest of the rock; choose another")
 
     def check_singles(self):
-        """A name means one fracture, with one joint; several lines or polygons of a set may make it up."""
+        """Checks the names of single fractures.
+
+        Parts of one fracture are of the same set and source, with the same properties."""
         first, errors = {}, Errors()
         for feature in self.fractures:
             one, name = first.setdefault(feature.single, feature), feature.single
@@ -195,7 +199,7 @@ class Network:
                 raise NetworkError(f"{feature.name}: has dimension {feature.points.shape[1]}, the domain {self.dim}")
 
     def check_reach(self):
-        """Coordinates far from the domain are mistakes, and beyond round-off."""
+        """Rejects coordinates far from the domain, which would suffer from round-off."""
         centre, most, errors = 0.5 * (self.domain.low + self.domain.high), MOST_DIAGONALS * self.domain.size, Errors()
         for feature in self.fractures + self.constraints:
             x = feature.points.ravel()[abs(feature.points).argmax()]

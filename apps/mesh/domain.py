@@ -1,4 +1,4 @@
-"""Bodies: the domain and its regions. Their sides, what of a fracture lies in them, and which points do."""
+"""Bodies, i.e. the domain and its regions: their sides, and intersections with fractures."""
 import numpy as np
 from shapely.geometry import LineString, Polygon
 from shapely.ops import polygonize, unary_union
@@ -9,7 +9,7 @@ BOX_SIDES = ["west", "east", "south", "north", "bottom", "top"]
 
 
 def box_sides(low, high):
-    """(name, corners) of the sides of a rectangle or a box."""
+    """Returns the names and the corners of the sides of a rectangle or a box."""
     if len(low) == 2:
         x = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
         return ["south", "east", "north", "west"], x
@@ -19,14 +19,14 @@ def box_sides(low, high):
 
 
 def rows(numbers, n, place, least):
-    """Numbers as points of n coordinates."""
+    """Returns numbers as an array of points with n coordinates. Error for fewer than `least` points."""
     if len(numbers) % n or len(numbers) < least * n:
         raise NetworkError(f"{place}: has {len(numbers)} numbers, needs {n} for each of at least {least} points")
     return np.array(numbers, float).reshape(-1, n)
 
 
 def in_polygon(points, ring):
-    """Whether points (n, 2) are in a polygon, by the parity of crossings."""
+    """Returns whether points (n, 2) are inside a polygon, by the parity of crossings."""
     inside = np.zeros(len(points), bool)
     for a, b in zip(ring, np.roll(ring, -1, axis=0)):
         crosses = (a[1] > points[:, 1]) != (b[1] > points[:, 1])
@@ -36,7 +36,7 @@ def in_polygon(points, ring):
 
 
 class Body:
-    """A polygon in 2D or a polyhedron in 3D; its sides are features of a kind, each of a group of its own or all of one."""
+    """Polygon in 2D or polyhedron in 3D. Its sides are features of one kind, in one group or each in its own group."""
 
     def __init__(self, place, description, kind, group=None):
         self.place = place
@@ -69,7 +69,7 @@ class Body:
             self.close()
 
     def close(self):
-        """The surfaces of a polyhedron; refuses one that is not closed."""
+        """Creates the surfaces and the volume of a polyhedron. Error if it is not closed."""
         count = {}
         for side in self.sides:
             check_polygon(side, 1e-9 * self.size)
@@ -86,18 +86,18 @@ class Body:
             self.volume += (1 if is_out else -1) * s.shape.area * ((x - self.low) @ s.plane.normal) / 3
 
     def holds(self, points):
-        """Whether points (n, dim) are inside."""
+        """Returns whether points (n, dim) are inside."""
         if self.dim == 2:
             return in_polygon(points, self.corners)
         inside = np.zeros(len(points), bool)
-        ray = np.array([0.5372, 0.6231, 0.5688])  # along no side that anyone draws
+        ray = np.array([0.5372, 0.6231, 0.5688])  # unlikely to be parallel to a side
         for s in self.surfaces:
             t = -s.plane.height(points) / (ray @ s.plane.normal)
             inside ^= (t > 0) & in_polygon(s.plane.inside(points + t[:, None] * ray), s.shape.exterior.coords[:-1])
         return inside
 
     def clip_line(self, line, tolerance):
-        """Parts of a polyline inside: arrays of points."""
+        """Returns the parts of a polyline inside the body, as arrays of points."""
         shape = LineString(line.points)
         if self.shape.buffer(tolerance).contains(shape):
             return [line.points]
@@ -105,7 +105,7 @@ class Body:
         return [np.array(part.coords) for part in parts if part.length > tolerance]
 
     def section(self, plane, tolerance):
-        """What of a plane lies inside, in its coordinates."""
+        """Returns the intersection of the body with a plane, as a shape in coordinates of the plane."""
         lines = []
         for s in self.surfaces:
             along = np.cross(s.plane.normal, plane.normal)
@@ -118,7 +118,7 @@ class Body:
         return unary_union(pieces)
 
     def clip_polygon(self, whole, tolerance):
-        """Surfaces of the parts of a surface inside; refuses a fracture on a side."""
+        """Returns the parts of a surface inside the body, as surfaces. Error for a fracture on a side."""
         polygon = whole.feature
         for s in self.surfaces:
             if are_level(whole, s, tolerance) and overlap(s, whole, tolerance):

@@ -8,22 +8,22 @@ import numpy as np
 from shapes import MOST, Errors, NetworkError, Unusable
 
 DRIVERS = {".geojson": "GeoJSON", ".json": "GeoJSON", ".shp": "ESRI Shapefile", ".gpkg": "GPKG", ".dxf": "DXF"}
-COMPANIONS = (".shx", ".dbf", ".prj", ".cpg")  # of a shapefile
-METRES, NO_UNIT = "6", "0"  # $INSUNITS of a drawing
-UNITS = {"1": "1 in", "2": "1 ft", "4": "1 mm", "5": "1 cm", "7": "1 km"}  # others
-NAME, NUMBER = ("name",), ("id", "fid", "number")  # attributes, in any case of letters
-OF_DRAWING = {"layer", "paperspace", "subclasses", "linetype", "entityhandle", "text"}  # that say nothing of a joint
+COMPANIONS = (".shx", ".dbf", ".prj", ".cpg")  # further files of a shapefile
+METRES, NO_UNIT = "6", "0"  # codes of $INSUNITS in DXF
+UNITS = {"1": "1 in", "2": "1 ft", "4": "1 mm", "5": "1 cm", "7": "1 km"}  # codes of other units
+NAME, NUMBER = ("name",), ("id", "fid", "number")  # attributes, case-insensitive
+OF_DRAWING = {"layer", "paperspace", "subclasses", "linetype", "entityhandle", "text"}  # no data of joints
 
 
 @dataclass
 class Outline:
-    """A fracture of a file: corners of a line (n, 2) or a polygon (n, 3) in metres, and what the file says of it."""
+    """Fracture of a file: corners of a line (n, 2) or a polygon (n, 3), with its attributes."""
 
-    title: str  # in messages
+    title: str  # for messages
     points: np.ndarray
     number: str
     name: str = ""
-    properties: dict = field(default_factory=dict)  # texts of the other attributes
+    properties: dict = field(default_factory=dict)  # text values of other attributes
 
 
 def is_exchange(path):
@@ -31,7 +31,7 @@ def is_exchange(path):
 
 
 def files_of(path):
-    """The file, and those beside it that belong to it."""
+    """Returns the path and the existing further files of a shapefile."""
     beside = [Path(path).with_suffix(ending) for ending in COMPANIONS] if Path(path).suffix.lower() == ".shp" else []
     return [path, *(str(file) for file in beside if file.is_file())]
 
@@ -48,7 +48,7 @@ def library():
 
 
 def reason(error, path):
-    """Of an error of GDAL, without places in its source."""
+    """Returns the message of an error of GDAL, without positions in its source code."""
     text = " ".join(str(error).split())
     at_line = re.search(r"error at line (\d+) of ", text)
     if at_line:
@@ -59,7 +59,7 @@ def reason(error, path):
 
 
 def geojson(path):
-    """The members of the file, with a check of its features that GDAL does not make."""
+    """Returns the members of a GeoJSON file. Checks geometries, which GDAL does not."""
     try:
         members = json.loads(Path(path).read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError:
@@ -84,7 +84,7 @@ GEOMETRIES = ("Point", "LineString", "Polygon", "MultiPoint", "MultiLineString",
 
 
 def wrong_geometry(geometry):
-    """The fault of a geometry of GeoJSON, or None."""
+    """Returns the error of a GeoJSON geometry, or None."""
     if geometry is None:
         return None
     if not isinstance(geometry, dict):
@@ -99,7 +99,7 @@ def wrong_geometry(geometry):
 
 
 def wrong_coordinates(x):
-    """The fault of a list of points, or lists of those, or None; a point is a list of numbers."""
+    """Returns the error of a (nested) list of points, or None. A point is a list of numbers."""
     if not isinstance(x, list):
         return f"has the coordinates {json.dumps(x)[:40]}, expected a list"
     if x and not isinstance(x[0], list):
@@ -111,7 +111,7 @@ def wrong_coordinates(x):
 
 
 def system_of(path, crs, osr):
-    """The coordinate system that GeoJSON names; GDAL takes one that it does not know for WGS 84."""
+    """Returns the coordinate system named in GeoJSON. Error for unknown names, for which GDAL would use WGS 84."""
     name = crs.get("properties", {}).get("name") if isinstance(crs, dict) and crs.get("type") == "name" else None
     if not isinstance(name, str):
         raise NetworkError(f"{path}: \"crs\" is {json.dumps(crs)[:60]}, expected null or "
@@ -128,7 +128,7 @@ def system_of(path, crs, osr):
 
 
 def refuse_degrees(path, layer, members, osr):
-    """Coordinates must be lengths in metres; `members` are those of GeoJSON."""
+    """Rejects coordinates in other units than metres. `members` are those of a GeoJSON file, else None."""
     system = layer.GetSpatialRef()
     if members is not None:
         if "crs" not in members:
@@ -138,7 +138,7 @@ def refuse_degrees(path, layer, members, osr):
                 "\"crs\": null for local coordinates in metres",
                 [path],
             )
-        if members["crs"] is None:  # a local system, as before RFC 7946
+        if members["crs"] is None:  # local system, valid before RFC 7946
             return
         system = system_of(path, members["crs"], osr)
     if system is None:
@@ -164,7 +164,7 @@ def refuse_degrees(path, layer, members, osr):
 
 
 def refuse_other_units(path):
-    """Of a drawing that says in which unit it is."""
+    """Rejects drawings with a unit other than metres."""
     lines = [line.strip() for line in Path(path).read_text(encoding="latin-1").splitlines()]
     at = lines.index("$INSUNITS") if "$INSUNITS" in lines else len(lines)
     unit = lines[at + 2] if at + 2 < len(lines) else NO_UNIT
@@ -177,7 +177,7 @@ def refuse_other_units(path):
 
 
 def parts(geometry, ogr):
-    """The lines and polygons in a geometry; arcs as polylines."""
+    """Yields (geometry, True for a polygon) of all lines and polygons in a geometry. Arcs become polylines."""
     geometry = geometry.GetLinearGeometry()
     kind = ogr.GT_Flatten(geometry.GetGeometryType())
     if kind in (ogr.wkbLineString, ogr.wkbPolygon, ogr.wkbTriangle):
@@ -188,7 +188,7 @@ def parts(geometry, ogr):
 
 
 def corners(part, is_polygon, dim, place, errors, unused):
-    """Of one fracture, or None and an error, or a line in `unused` where it has no extent."""
+    """Returns the corners of a fracture, or None. Appends to `errors`, or to `unused` for fractures without extent."""
     if is_polygon and dim == 2:
         errors.append(f"{place}: is a polygon; in 2D fractures are lines")
         return None
@@ -214,7 +214,7 @@ def corners(part, is_polygon, dim, place, errors, unused):
     elif not is_polygon:
         errors.append(f"{place}: is a line that is not closed; in 3D fractures are polygons, or closed lines")
         return None
-    keep = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))  # drawings repeat points
+    keep = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))  # drawings may repeat points
     if keep.sum() < dim:
         unused.append(f"{place}: has {keep.sum()} different points, needs {dim} at least")
         return None
@@ -222,7 +222,7 @@ def corners(part, is_polygon, dim, place, errors, unused):
 
 
 def outlines(feature, k, dim, path, ogr, errors, unused):
-    """The fractures of the k-th feature; points and texts are none. Several parts are one fracture by their number."""
+    """Yields the fractures of the k-th feature, without points and texts. Parts with one number form one fracture."""
     texts = {
         feature.GetFieldDefnRef(i).GetName(): str(feature.GetField(i))
         for i in range(feature.GetFieldCount())
@@ -247,7 +247,7 @@ def outlines(feature, k, dim, path, ogr, errors, unused):
 
 
 def layer_of(feature, layer, path):
-    """The name of the layer of a feature: of a drawing an attribute."""
+    """Returns the name of the layer of a feature. In drawings it is an attribute."""
     return feature.GetField("Layer") if Path(path).suffix.lower() == ".dxf" else layer.GetName()
 
 
@@ -261,7 +261,7 @@ def check_layers(path, layers, known):
 
 
 def throw(errors, unused, left_out, path):
-    """Refuses a file; what cannot be used goes to `left_out` instead, unless this is None."""
+    """Raises the errors of a file. Unusable fractures are appended to `left_out`, or are errors if it is None."""
     found = Errors(errors)
     for line in unused if left_out is None else ():
         with found.of_one():
@@ -272,8 +272,10 @@ def throw(errors, unused, left_out, path):
 
 
 def read(path, dim, layers=(), left_out=None, has_unit=False):
-    """The fractures in a file, of all layers or of these; refuses it with a line for each thing that is wrong. `left_out`:
-    see throw(); `has_unit`: the scene says in which unit coordinates are."""
+    """Returns the fractures in the given layers of a file; all layers by default.
+
+    All errors of the file are raised together, see throw() for `left_out`. With `has_unit` the scene gives the unit
+    of the coordinates."""
     gdal, ogr, osr = library()
     if not Path(path).is_file():
         raise NetworkError(
@@ -292,7 +294,7 @@ def read(path, dim, layers=(), left_out=None, has_unit=False):
                 known.add(layer_of(feature, layer, path))
                 if not layers or layer_of(feature, layer, path) in layers:
                     found += outlines(feature, k, dim, path, ogr, errors, unused)
-    except RuntimeError as error:  # by GDAL
+    except RuntimeError as error:  # raised by GDAL
         raise NetworkError(f"{path}: cannot be read: {reason(error, path)}", [path]) from None
     check_layers(path, layers, known)
     if not errors and not unused and not found:

@@ -1,17 +1,17 @@
-"""Fractures in FracMan's text format, .fab; x points east, y north and z up."""
+"""Fractures in FracMan's text format .fab, with x to the east, y to the north and z upwards."""
 import numpy as np
 from shapes import NetworkError
 from tables import Row, Table, complete, numbers, read_lines
 
 METRES = ("m", "meter", "meters", "metre", "metres")
-ENTRIES = {"format": ("ascii",), "length_unit": METRES, "xaxis": ("east",)}  # allowed in the header
+ENTRIES = {"format": ("ascii",), "length_unit": METRES, "xaxis": ("east",)}  # allowed values in the header
 COUNTS = {"FRACTURE": "No_Fractures", "TESSFRACTURE": "No_TessFractures"}
 HEAD = {"FRACTURE": "the number of a fracture and that of its corners",
         "TESSFRACTURE": "the numbers of a fracture, its nodes, its facets and its set"}
 
 
 class Section:
-    """The lines between BEGIN NAME and END NAME of a file; line numbers are from 0 on."""
+    """Lines between BEGIN NAME and END NAME of a file, numbered from 0."""
 
     def __init__(self, path, lines, name, begin):
         self.path, self.lines, self.name, self.at = path, lines, name, begin + 1
@@ -27,7 +27,9 @@ class Section:
         raise NetworkError(f"{self.place(k)}: {why}", [self.path])
 
     def heads(self):
-        """(line, words) of the first line of each fracture; the reader of a fracture moves `at` behind it."""
+        """Yields (line number, words) of the first line of each fracture.
+
+        Readers advance `at` to the end of the fracture."""
         while self.at < self.end:
             k, words = self.at, self.lines[self.at].split()
             self.at += 1
@@ -39,14 +41,14 @@ class Section:
             yield k, words
 
     def take(self, n):
-        """The words of the next n lines."""
+        """Returns the words of the next n lines."""
         found = [line.split() for line in self.lines[self.at:min(self.at + n, self.end)]]
         self.at += n
         return found
 
 
 def points(section, k, number, n, kind, table):
-    """The n corners or nodes after the head of a fracture, in lines `number x y z` that count from 1 or 0 on."""
+    """Returns the n corners or nodes of a fracture, from lines `number x y z`, numbered from 0 or 1."""
     begin, found = section.at, section.take(n)
     first = 0 if found and found[0][:1] == ["0"] else 1
     counted = [words[:1] == [str(first + row)] and len(words) > 3 for row, words in enumerate(found)]
@@ -56,7 +58,7 @@ def points(section, k, number, n, kind, table):
 
 
 def polygon(section, k, words, table):
-    """A plane fracture: corners, and a line `0 x y z` of its normal."""
+    """Yields the corners of a plane fracture. The line `0 x y z` of its normal must follow."""
     corners = points(section, k, words[0], int(words[1]), "corners", table)
     normal = section.take(1)
     if not normal or normal[0][:1] != ["0"] or len(normal[0]) < 4:
@@ -65,7 +67,7 @@ def polygon(section, k, words, table):
 
 
 def facets(section, k, words, table):
-    """The triangles of a tessellated fracture."""
+    """Yields the triangles of a tessellated fracture."""
     n_nodes, n_facets = int(words[1]), int(words[2])
     nodes, begin = points(section, k, words[0], n_nodes, "nodes", table), section.at
     known = {section.lines[begin - n_nodes + row].split()[0]: x for row, x in enumerate(nodes)}
@@ -80,7 +82,9 @@ def facets(section, k, words, table):
 
 
 def read_section(section, table, first):
-    """Adds the fractures of a section; returns how many. `first`: {number: line} of all that were read."""
+    """Adds the fractures of a section to the table and returns their number.
+
+    `first` {number: line} contains all so far."""
     count = 0
     for k, words in section.heads():
         number = words[0]
@@ -95,7 +99,7 @@ def read_section(section, table, first):
 
 
 def header(path, lines):
-    """{entry: (line, text)} of lines `entry = text`; refuses other units than metres and other axes."""
+    """Returns {entry: (line, text)} of lines `entry = text`. Error for other units than metres and other axes."""
     found = {}
     for k, line in enumerate(lines, 1):
         entry, equals, text = (word.strip().lower() for word in line.partition("="))
@@ -111,7 +115,7 @@ def header(path, lines):
 
 
 def check_counts(path, said, counts):
-    """The header says how many fractures there are."""
+    """Compares the numbers of fractures with the header."""
     for name, entry in COUNTS.items():
         k, text = said.get(entry.lower(), (0, None))
         if text is not None and text != str(counts[name]):
@@ -120,7 +124,7 @@ def check_counts(path, said, counts):
 
 
 def read_fab(path):
-    """The plane fractures of the sections FRACTURE, and those of triangles of the sections TESSFRACTURE."""
+    """Returns the plane fractures of the sections FRACTURE and the triangulated ones of the sections TESSFRACTURE."""
     table, lines = Table(), read_lines(path)
     words = [(k, line.split()[:2]) for k, line in enumerate(lines) if "BEGIN" in line and "FRACTURE" in line]
     begins = [(k, two[1]) for k, two in words if two[0] == "BEGIN"]

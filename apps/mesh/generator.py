@@ -1,10 +1,10 @@
-"""Fractures at random: centres uniform in the domain, lengths by a power law, directions around a mean."""
+"""Random fractures: uniform centres in the domain, lengths by a power law, orientations around a mean."""
 import numpy as np
 from shapes import frame, regular
 
 
 def power_law(uniform, shortest, longest, exponent):
-    """Lengths with a density proportional to L^-exponent between two limits, from uniform numbers in [0, 1)."""
+    """Returns lengths with a density proportional to L^-exponent between two limits, from uniform numbers in [0, 1)."""
     if abs(exponent - 1) < 1e-12:
         return shortest * (longest / shortest) ** uniform
     a, b = shortest ** (1 - exponent), longest ** (1 - exponent)
@@ -12,7 +12,9 @@ def power_law(uniform, shortest, longest, exponent):
 
 
 def fisher(uniform, mean, concentration):
-    """Unit vectors around `mean` with a density proportional to exp(concentration * cosine), from pairs (n, 2)."""
+    """Returns unit vectors around `mean` with a density proportional to exp(concentration * cosine).
+
+    The input `uniform` (n, 2) contains uniform numbers in [0, 1)."""
     k = concentration
     cosine = 1 + np.log1p((uniform[:, 0] - 1) * -np.expm1(-2 * k)) / k if k > 0 else 2 * uniform[:, 0] - 1
     sine, angle = np.sqrt(np.clip(1 - cosine**2, 0, None)), 2 * np.pi * uniform[:, 1]
@@ -23,7 +25,7 @@ def fisher(uniform, mean, concentration):
 
 
 def von_mises(uniform, concentration):
-    """Angles with a density proportional to exp(concentration * cosine)."""
+    """Returns angles, in radians, with a density proportional to exp(concentration * cosine)."""
     angle = np.linspace(-np.pi, np.pi, 8193)
     density = np.exp(concentration * (np.cos(angle) - 1))
     share = np.concatenate([[0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
@@ -31,7 +33,7 @@ def von_mises(uniform, concentration):
 
 
 def centres(random, domain, n):
-    """n points uniform in the domain."""
+    """Returns n uniformly distributed points in the domain."""
     found = np.empty((0, domain.dim))
     while len(found) < n:
         points = domain.low + random.random((n, domain.dim)) * (domain.high - domain.low)
@@ -40,8 +42,10 @@ def centres(random, domain, n):
 
 
 def at_random(entries, domain, again=None):
-    """Arrays of points: lines in 2D, regular polygons in 3D whose corners lie on a circle of the diameter. `again` {number of a
-    fracture, from 0: how often it is drawn again}: the others stay as they are."""
+    """Returns random fractures as arrays of points: lines in 2D, regular polygons in 3D.
+
+    The corners of a polygon lie on a circle with the random diameter. `again` {index of a fracture: number of repeated
+    draws} changes only these fractures."""
     def drawn(seed, n):
         return draw(np.random.Generator(np.random.PCG64(seed)), n, entries, domain)
 

@@ -1,4 +1,4 @@
-"""Hands a plan to gmsh, and takes the cells back."""
+"""Passes a plan to gmsh and returns the mesh."""
 import re
 from dataclasses import dataclass
 
@@ -6,13 +6,15 @@ import gmsh
 import numpy as np
 from shapes import NetworkError
 
-FAR = 20  # sizes of the domain
+FAR = 20  # in diagonals of the domain
 
 
 @dataclass
 class Mesh:
-    """Cells and faces by their nodes, from 0. `faces` of dimension d - 1 have the number of the plan's owner that they
-    belong to, `intersections` of dimension d - 2 are those of fractures."""
+    """Cells and faces by the indices of their nodes.
+
+    The faces of dimension d - 1 have the index of their owner in the plan. The intersections of fractures have
+    dimension d - 2."""
     points: np.ndarray
     cells: np.ndarray
     faces: np.ndarray
@@ -21,7 +23,7 @@ class Mesh:
 
 
 def make_mesh(plan, sizes):
-    """Throws a NetworkError with gmsh's words where gmsh gives up."""
+    """Returns the Mesh of a plan. Raises a NetworkError with the message of gmsh if gmsh fails."""
     gmsh.initialize(readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -31,7 +33,7 @@ def make_mesh(plan, sizes):
         set_sizes(sizes, origin)
         try:
             gmsh.model.mesh.generate(plan.dim)
-        except Exception as error:  # what gmsh throws has no type of its own
+        except Exception as error:  # gmsh raises untyped exceptions
             said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
             raise model.failure(said or [str(error)]) from None
         return model.mesh(sizes)
@@ -40,15 +42,16 @@ def make_mesh(plan, sizes):
 
 
 def origin_of(domain):
-    """Where gmsh has its origin: near by, as it multiplies coordinates with each other; at that of the network if that is
-    not far, so that meshes stay the same."""
+    """Returns the origin of coordinates in gmsh, close to the domain to limit round-off in products of coordinates.
+
+    The origin of the network is used unless it is far away, so that meshes do not change."""
     middle = np.zeros(3)
     middle[:domain.dim] = 0.5 * (domain.low + domain.high)
     return middle if np.linalg.norm(middle) > FAR * domain.size else np.zeros(3)
 
 
 class Model:
-    """The plan's points, edges and faces in gmsh, which numbers them from 1."""
+    """Points, edges and faces of the plan in gmsh, with tags from 1."""
 
     def __init__(self, plan, origin):
         self.plan, self.origin, geo = plan, origin, gmsh.model.geo
@@ -72,7 +75,7 @@ class Model:
         return [self.line[a, b] if a < b else -self.line[b, a] for a, b in zip(ring, ring[1:] + ring[:1])]
 
     def failure(self, said):
-        """An error with what gmsh says of a mesh that it could not make, and the names of the features that it numbers."""
+        """Returns an error with the message of gmsh and the names of the features with the tags in this message."""
         owners = {face.tag: self.plan.owners[face.owner].name for face in self.faces}
         names = [owners[int(tag)] for line in said for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners]
         where = f", at {' and '.join(dict.fromkeys(names))}" if names else ""
@@ -112,7 +115,7 @@ class Model:
 
 
 def foremost(plan, owners):
-    """The fracture or the side among the owners of an edge."""
+    """Returns the side or the fracture among the owners of an edge, or None."""
     for kind in ("boundary", "fracture"):
         for k in sorted(owners):
             if plan.owners[k].kind == kind:
@@ -121,7 +124,7 @@ def foremost(plan, owners):
 
 
 def set_sizes(sizes, origin):
-    """Fields of gmsh: for each size the distance from the points that ask for it, and the least of all."""
+    """Defines the size field of gmsh: the minimum over all sizes of a function of the distance to their points."""
     network, field = sizes.network, gmsh.model.mesh.field
     level = np.round(2 * np.log2(sizes.sizes / network.size)).astype(int)
     fields = []

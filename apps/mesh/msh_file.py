@@ -1,13 +1,15 @@
-"""Writes meshes as files of gmsh, version 2.2, binary."""
+"""Writes meshes in the binary format of gmsh, version 2.2."""
 import numpy as np
 from shapes import Errors
 
-TYPES = {1: 15, 2: 1, 3: 2, 4: 4}  # gmsh's number of a point, line, triangle, tetrahedron by its nodes
+TYPES = {1: 15, 2: 1, 3: 2, 4: 4}  # {number of nodes: type in gmsh} of points, lines, triangles, tetrahedra
 
 
 def write(path, points, groups, singles):
-    """`groups`: (dimension, name, elements by their nodes from 0, number in `singles` of each, or None); `singles`:
-    fractures, which gmsh passes over."""
+    """Writes a mesh file.
+
+    groups   (dimension, name, elements [element, node] from 0, index in `singles` of each element or None)
+    singles  single fractures, in a section that gmsh ignores"""
     with open(path, "wb") as file:
         file.write(b"$MeshFormat\n2.2 1 8\n" + np.int32(1).tobytes() + b"\n$EndMeshFormat\n$PhysicalNames\n")
         file.write(f"{len(groups)}\n".encode())
@@ -39,7 +41,7 @@ def write(path, points, groups, singles):
 
 
 def singles_of(plan):
-    """The fractures of all sets, one of each name."""
+    """Returns the single fractures of all sets, one feature for each name."""
     return list({owner.single: owner for owner in plan.owners if owner.kind == "fracture"}.values())
 
 
@@ -49,7 +51,7 @@ def single_of_owners(plan):
 
 
 def groups_of(mesh, plan):
-    """The physical groups of a mesh: sides, sets of fractures, regions, intersections."""
+    """Returns the physical groups of a mesh: sides, sets of fractures, regions, intersections."""
     dim, found = plan.dim, []
     number = single_of_owners(plan)
     groups = {}

@@ -1,4 +1,4 @@
-"""Fractures of several lines or polygons of one name or number: these parts must meet."""
+"""Fractures of several lines or polygons with the same name or number. The parts must meet."""
 from itertools import product
 
 import numpy as np
@@ -9,7 +9,7 @@ HOW = {2: "at their ends", 3: "along their sides"}
 
 
 class Pieces:
-    """Chains of things that are joined: of each the first in its chain."""
+    """Connected components of n objects (union-find). The first object represents its component."""
 
     def __init__(self, n):
         self.first = list(range(n))
@@ -25,7 +25,7 @@ class Pieces:
 
 
 def ends_meet(parts, tolerance):
-    """Pairs of lines with two ends at one place."""
+    """Yields pairs of lines with a common end."""
     ends = np.concatenate([part.points[[0, -1]] for part in parts])
     for i, j in zip(*near_pairs(ends, ends, 2 * tolerance)):
         if np.linalg.norm(ends[i] - ends[j]) <= tolerance:
@@ -37,7 +37,7 @@ def sides(polygon):
 
 
 def sides_meet(parts, tolerance, pieces):
-    """Pairs of polygons whose rims meet; of those that are joined already only one pair."""
+    """Yields pairs of polygons whose rims meet, except pairs in the same component."""
     low, high = (np.array([of(part.points, axis=0) for part in parts]) for of in (np.min, np.max))
     for i, j in zip(*near_pairs(low, high, 2 * tolerance)):
         if pieces.of(i) != pieces.of(j):
@@ -48,8 +48,7 @@ def sides_meet(parts, tolerance, pieces):
 
 
 def lone(parts, dim, tolerance):
-    """The first part that does not meet the first of all, on the way over others, or None. Parts of one row or
-    feature belong together."""
+    """Returns the first part not connected to part 0, or None. Parts of one row or feature are connected."""
     pieces, first = Pieces(len(parts)), {}
     for k, part in enumerate(parts):
         pieces.join(k, first.setdefault(part.name, k))
@@ -59,7 +58,7 @@ def lone(parts, dim, tolerance):
 
 
 def joined_parts(fractures, dim, tolerance):
-    """A line for each fracture of several rows or features; refuses those whose parts do not meet."""
+    """Returns a line of the report for each fracture of several rows or features. Error if its parts do not meet."""
     of_name, found, errors = {}, [], Errors()
     for fracture in fractures:
         of_name.setdefault(fracture.single, []).append(fracture)

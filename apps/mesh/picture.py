@@ -1,5 +1,6 @@
-"""A picture of a mesh, cells and fractures in 2D, faces of fractures in 3D, beside the directions of fractures; a colour for
-each set."""
+"""Picture of a mesh with the orientations of the fractures, one colour for each set.
+
+In 2D it shows cells and fractures, in 3D the faces of the fractures."""
 import sys
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from style import FAINT, INK, LINES, plt, save  # noqa: E402
 
 
 def sets_of(mesh, plan):
-    """(name, colour, faces) of each set of fractures."""
+    """Yields (name, colour, faces) of each set of fractures."""
     names = list(dict.fromkeys(owner.group for owner in plan.owners if owner.kind == "fracture"))
     for k, name in enumerate(names):
         owners = [i for i, owner in enumerate(plan.owners) if owner.kind == "fracture" and owner.group == name]

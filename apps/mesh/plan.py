@@ -1,4 +1,4 @@
-"""What gmsh is to mesh: points, edges and plane faces that meet in edges and points only, and whose they are."""
+"""Geometry for gmsh: points, edges and plane faces that meet only in edges and points, with their owners."""
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from surfaces import Surface, are_level, check_angles, moved_onto, overlap, trac
 
 
 class Face:
-    """A plane face: rings of points, the first around it; edges and points inside that cells must keep to."""
+    """Plane face: rings of points, first the outer ring, with the edges and points embedded in the face."""
 
     def __init__(self, owner, rings, shape):
         self.owner, self.rings, self.shape = owner, rings, shape
@@ -19,13 +19,17 @@ class Face:
 
 
 class Plan:
-    """points (n, 3); edges {(a, b): numbers of owners}; faces; owners: the features of those numbers, more than once if
-    a feature is in parts; `repairs` are lines for the report."""
+    """Geometry of a network.
+
+    points  (n, 3)
+    edges   {(a, b): indices of owners}
+    owners  features; a feature in several parts occurs more than once
+    repairs lines of the report"""
 
     def __init__(self, network):
         self.network, self.dim = network, network.dim
         self.repairs, self.surfaces = list(network.joined), None
-        # What joins lines would bend surfaces, of which only corners are moved, in their planes; all else is exact.
+        # In 3D a larger tolerance for edges would bend surfaces. Only corners move, within their planes.
         self.tolerance = network.tolerance if self.dim == 2 else min(network.tolerance, 1e-6 * network.domain.size)
         self.owners, segments, parents, touches = (self.lines if self.dim == 2 else self.polygons)()
         graph = arrange(segments, parents, self.tolerance)
@@ -35,7 +39,7 @@ class Plan:
         if self.dim == 2:
             self.straighten_sides()
             self.part_overlaps()
-        self.loose = {}  # points in which features touch
+        self.loose = {}  # {point where features touch: indices of owners}
         for point, of in touches:
             self.loose.setdefault(int(np.argmin(np.linalg.norm(self.points - point, axis=1))), set()).update(of)
 
@@ -43,7 +47,7 @@ class Plan:
         return self.owners[owner].kind == "fracture"
 
     def fractures_of(self, owners):
-        """The fractures among owners, each once, in their order."""
+        """Returns the fractures among owners, each once, in their order."""
         return list({id(self.owners[k]): self.owners[k] for k in sorted(owners) if self.is_fracture(k)}.values())
 
     def tell_joined(self, graph):
@@ -56,7 +60,7 @@ class Plan:
                 self.repairs.append(f"joined what was {gap:.3g} m apart: " + " and ".join(names))
 
     def straighten_sides(self):
-        """Moves points that were joined to a side of the domain onto it, 2D; corners are on two sides, and stay."""
+        """Moves points joined to one side of the domain onto this side, in 2D. Corners are on two sides and stay."""
         sides = {}
         for edge, of in self.edges.items():
             for k in of:
@@ -70,7 +74,7 @@ class Plan:
                 self.points[point, :2] = begin + (self.points[point, :2] - begin) @ along * along
 
     def part_overlaps(self):
-        """Gives edges of two fractures, or of one and a side, which joining made of lines at an angle, to the first."""
+        """Assigns an edge of several features to the first, if joining points at an angle made them overlap."""
         least = max(self.network.minimum_angle, 0.01)
         for edge, of in self.edges.items():
             owners = [k for k in sorted(of) if self.owners[k].kind in ("fracture", "boundary")]
@@ -84,7 +88,7 @@ class Plan:
                     self.repairs.append(f"joined along {length:.3g} m: {self.owners[owners[0]].name} and {self.owners[k].name}")
 
     def lines(self):
-        """Owners, segments and their owners of a network in 2D."""
+        """Returns owners, segments and the owners of the segments of a network in 2D."""
         network, domain = self.network, self.network.domain
         owners, errors = list(domain.sides), Errors()
         for line in network.fractures + network.constraints + [s for body in network.regions for s in body.sides]:
@@ -105,7 +109,7 @@ class Plan:
 
     @contextmanager
     def leaving_out(self, feature):
-        """Leaves a fracture or a constraint out that cannot be used, where the network allows it."""
+        """Context that omits an unusable fracture or constraint if the network allows it."""
         try:
             yield
         except Unusable as error:
@@ -115,7 +119,7 @@ class Plan:
             self.network.fractures = [one for one in self.network.fractures if one is not feature]
 
     def check_sets(self):
-        """Each set must have a fracture in the domain."""
+        """Checks that each set has a fracture in the domain."""
         left, errors = {fracture.group for fracture in self.network.fractures}, Errors()
         for name in self.network.entries["fractures"]:
             if name not in left:
@@ -123,7 +127,7 @@ class Plan:
         errors.throw()
 
     def thin(self, line):
-        """Drops points of a polyline that are closer than the tolerance; sides of bodies stay as they are."""
+        """Removes points of a polyline closer than the tolerance. Sides of bodies do not change."""
         if line.kind not in ("fracture", "constraint") or not np.isfinite(line.points).all():
             return
         points = thinned(line.points, self.network.tolerance)
@@ -133,7 +137,9 @@ class Plan:
             self.repairs.append(f"left out {dropped} point{'s' if dropped > 1 else ''} closer to others than the tolerance: {line.name}")
 
     def worth(self, line, parts):
-        """The parts of a line that are longer than what must not be closer; tells of others, refuses a fracture or constraint that has none."""
+        """Returns the parts of a line that are longer than the minimum distance; reports others.
+
+        Error for a fracture or constraint without such a part."""
         length = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in parts]
         least = {"fracture": self.network.minimum_distance, "constraint": self.tolerance}.get(line.kind, 0)
         whole = np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum()
@@ -148,7 +154,7 @@ class Plan:
         return [part for part, x in zip(parts, length) if x >= self.network.minimum_distance]
 
     def polygons(self):
-        """The same in 3D, and points in which surfaces touch."""
+        """Returns owners, segments, their owners, and points of contact of surfaces, of a network in 3D."""
         network, domain, tolerance = self.network, self.network.domain, self.tolerance
         surfaces, errors = list(domain.surfaces), Errors()
         for feature in network.fractures:
@@ -193,7 +199,7 @@ class Plan:
         return [s.feature for s in surfaces], np.array(segments), parents, touches
 
     def flatten(self, feature):
-        """Moves corners into the plane of a polygon."""
+        """Moves the corners of a polygon into its plane."""
         plane = Plane(feature.points)
         height = plane.height(feature.points)
         if abs(height).max() > 1e-9 * self.network.domain.size:
@@ -201,7 +207,7 @@ class Plan:
         feature.points = feature.points - height[:, None] * plane.normal
 
     def joined_corners(self, surfaces, others):
-        """The surfaces with corners on others that they nearly touch."""
+        """Returns surfaces with corners moved onto other surfaces within the tolerance."""
         found = []
         for surface in surfaces:
             moved, told = moved_onto(surface, others, self.network.tolerance)
@@ -212,8 +218,9 @@ class Plan:
         return found
 
     def meet(self, one, other):
-        """Segments in which two surfaces meet, but for sides that both have; refuses fractures that lie on each other or
-        meet at too small an angle."""
+        """Returns the segments in which two surfaces meet, except common sides of level surfaces.
+
+        Error for fractures on each other, and for angles below the minimum angle."""
         tolerance = self.tolerance
         are_fractures = one.feature.kind == other.feature.kind == "fracture"
         if are_level(one, other, tolerance):
@@ -232,7 +239,7 @@ class Plan:
         return found
 
     def faces(self):
-        """All faces, cut along edges; checks that they cover each surface."""
+        """Returns all faces, cut along edges. Checks that the faces cover each surface."""
         if self.dim == 2:
             return faces_of(0, self.points[:, :2], list(self.edges), self.loose, self.network.domain.shape, self.tolerance)
         edges = [[] for _ in self.surfaces]
@@ -248,11 +255,11 @@ class Plan:
                 refuse(surface.feature, f"its faces have {area:.9g} m^2 of {surface.shape.area:.9g} m^2: its intersections could not be resolved; "
                                         f"try another \"tolerance\"")
             found += faces
-        return list({frozenset(face.rings[0]): face for face in reversed(found)}.values())[::-1]  # joined ones once
+        return list({frozenset(face.rings[0]): face for face in reversed(found)}.values())[::-1]  # without duplicates
 
 
 def direction(line, point):
-    """Of the segment of a polyline that is nearest to a point."""
+    """Returns the unit direction of the segment of a polyline that is nearest to a point."""
     begin, end = line[:-1], line[1:]
     _, gap = on_segment(np.broadcast_to(point, begin.shape), begin, end)
     along = (end - begin)[np.argmin(gap)]
@@ -260,7 +267,7 @@ def direction(line, point):
 
 
 def check_same(fractures, tolerance):
-    """Refuses two fractures with the same points."""
+    """Raises an error for fractures with the same points."""
     seen, errors = {}, Errors()
     for fracture in fractures:
         grid = np.round(fracture.points / (10 * tolerance)) + 0.0
@@ -273,7 +280,9 @@ def check_same(fractures, tolerance):
 
 
 def faces_of(owner, flat, edges, loose, shape, tolerance):
-    """The faces into which edges cut a polygon `shape`; `flat` are coordinates of all points in its plane."""
+    """Returns the faces of a polygon `shape`, cut along edges.
+
+    `flat` contains all points in coordinates of its plane."""
     number = {tuple(flat[k]): k for edge in edges for k in edge}
     used, faces = set(), []
     room = shape.buffer(10 * tolerance)

@@ -1,4 +1,4 @@
-"""Tells what is being done where that takes long."""
+"""Messages about long operations."""
 import sys
 import threading
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ PATIENCE = 5.0  # seconds
 
 @contextmanager
 def doing(what):
-    """A line on standard error if what is done in this context has taken some seconds and goes on."""
+    """Prints a message on standard error if the operation in this context takes more than some seconds."""
     timer = threading.Timer(PATIENCE, lambda: print(f"sprekk: {what} ...", file=sys.stderr, flush=True))
     timer.daemon = True
     timer.start()

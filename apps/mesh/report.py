@@ -1,11 +1,11 @@
-"""What a mesh is like: counts, shapes of cells, lengths of edges beside those that were asked for."""
+"""Statistics of a mesh: counts, quality of cells, lengths of edges compared with the required sizes."""
 from collections import defaultdict
 
 import numpy as np
 
 
 def gamma(points, cells):
-    """Radius of the inscribed over that of the circumscribed circle or sphere, 1 for a regular cell; and the volumes."""
+    """Returns the quality (radius of the inscribed over that of the circumscribed sphere, normalised to 1) and the volumes."""
     x = points[cells]
     if cells.shape[1] == 3:
         side = [np.linalg.norm(x[:, i] - x[:, j], axis=1) for i, j in ((1, 2), (2, 0), (0, 1))]
@@ -21,7 +21,7 @@ def gamma(points, cells):
 
 
 def measure(points, faces):
-    """Lengths of lines or areas of triangles."""
+    """Returns the lengths of lines or the areas of triangles."""
     x = points[faces]
     if faces.shape[1] == 2:
         return np.linalg.norm(x[:, 1] - x[:, 0], axis=1)
@@ -29,13 +29,13 @@ def measure(points, faces):
 
 
 def edges_of(faces):
-    """Each edge of lines or triangles once."""
+    """Returns the edges of lines or triangles, each once."""
     pairs = faces if faces.shape[1] == 2 else np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return np.unique(np.sort(pairs, axis=1), axis=0)
 
 
 def of_sets(mesh, plan, sizes):
-    """By set of fractures: how many, length or area, faces, median edge and the median size that was asked for."""
+    """Returns for each set of fractures: number, length or area, faces, median edge and median required size."""
     sets = {}
     for k, owner in enumerate(plan.owners):
         if owner.kind == "fracture":

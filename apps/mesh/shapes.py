@@ -1,4 +1,4 @@
-"""Fractures, and what else cells keep to, as points in space; the frame of a plane."""
+"""Features, i.e. fractures and other constraints of a mesh, as points in space; frames of planes."""
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -7,12 +7,13 @@ from shapely.geometry import LineString, Polygon
 from shapely.validation import explain_validity
 
 
-MOST = 1e12  # m; the largest coordinate
+MOST = 1e12  # largest coordinate, m
 
 
 class NetworkError(Exception):
-    """What is wrong with a network: a line for each thing; `files` open lines about themselves. `features` has the names of those
-    that stand in each other's way, a tuple for each line; empty where the fault is not theirs."""
+    """Errors of a network, a line each. `files` are names that may start a line.
+
+    `features` contains the names of the conflicting features of each line. It is empty for other errors."""
 
     def __init__(self, what, files=(), features=()):
         super().__init__(what)
@@ -20,7 +21,7 @@ class NetworkError(Exception):
 
 
 class Unusable(NetworkError):
-    """A fracture that a larger map may well have, and a network cannot: outside of the domain, too short, without geometry."""
+    """Fracture that a network cannot use, but a larger map may contain: outside of the domain, too short, without geometry."""
 
 
 HINT = ("\"unusable fractures\" = \"left out\" in the section network leaves fractures out that are outside of the domain, "
@@ -28,7 +29,7 @@ HINT = ("\"unusable fractures\" = \"left out\" in the section network leaves fra
 
 
 class Errors:
-    """Collects what is wrong with several things, to tell it all at once: a line each."""
+    """Collects errors, one line each, and raises them together."""
 
     MOST = 20
 
@@ -42,7 +43,7 @@ class Errors:
             yield
         except NetworkError as error:
             self.lines.append(f"{error}; {HINT}" if isinstance(error, Unusable) and not self.has_unusable else str(error))
-            self.features += error.features or [()]  # which no other drawing mends
+            self.features += error.features or [()]  # other random fractures would not help
             self.has_unusable |= isinstance(error, Unusable)
 
     def throw(self, files=()):
@@ -53,18 +54,18 @@ class Errors:
 
 @dataclass
 class Feature:
-    """A polyline in 2D, a plane polygon in 3D."""
+    """Polyline in 2D, plane polygon in 3D."""
     kind: str  # "fracture", "constraint", "boundary" or "region"
-    group: str  # of the mesh: name of the set, the boundary or the region
-    name: str  # in messages
+    group: str  # in the mesh: name of the set, the boundary or the region
+    name: str  # for messages
     points: np.ndarray = field(repr=False)  # (n, 2) or (n, 3), m
-    single: str = ""  # of a fracture: how results call it; several of one name are one
-    source: str = ""  # of a fracture: the file or the section that it is from
-    properties: dict = field(default_factory=dict)  # entries of its joint that it has of its own, as texts
+    single: str = ""  # fractures: name in results, common to all parts of a fracture
+    source: str = ""  # fractures: file or section of origin
+    properties: dict = field(default_factory=dict)  # fractures: own entries of the joint, as texts
 
 
 def at(point, extent):
-    """A place in words, to a hundredth of a metre and to 1e-4 of the extent or better."""
+    """Returns a point as text, with a resolution of 0.01 m and 1e-4 of the extent, or better."""
     finest, largest = min(0.01, 1e-4 * extent), np.abs(point).max()
     digits = max(6, int(np.floor(np.log10(max(largest, finest) / finest))) + 1)
     return f"({', '.join(f'{x:.{digits}g}' for x in point)})"
@@ -79,7 +80,7 @@ def unusable(feature, what):
 
 
 def thinned(points, tolerance):
-    """A polyline without the points that are within the tolerance of the one before; its ends stay."""
+    """Returns a polyline without points within the tolerance of the previous one. The ends stay."""
     kept = [0]
     for k in range(1, len(points)):
         if np.linalg.norm(points[k] - points[kept[-1]]) > tolerance:
@@ -91,12 +92,12 @@ def thinned(points, tolerance):
 
 
 class Plane:
-    """The plane through the points of a polygon, with coordinates in it."""
+    """Plane through the points of a polygon, with coordinates in the plane."""
 
     def __init__(self, points):
         self.centre = points.mean(axis=0)
         area = 0.5 * np.cross(points - self.centre, np.roll(points, -1, axis=0) - self.centre).sum(axis=0)
-        self.area = np.linalg.norm(area)  # of a polygon that does not cross itself
+        self.area = np.linalg.norm(area)  # of a polygon without self-intersection
         if self.area > 0:
             self.normal = area / self.area
             longest = np.argmax(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1))
@@ -108,22 +109,24 @@ class Plane:
         return (points - self.centre) @ self.normal
 
     def inside(self, points):
-        """Coordinates in the plane."""
+        """Returns the coordinates [point, 2] in the plane."""
         return (points - self.centre) @ self.axes.T
 
     def outside(self, coordinates):
-        """The points of coordinates in the plane."""
+        """Returns the points [point, 3] of coordinates in the plane."""
         return self.centre + np.asarray(coordinates) @ self.axes
 
 
 def diameter(points):
-    """The largest distance between two of the points."""
+    """Returns the largest distance between two of the points."""
     return max(np.linalg.norm(points - point, axis=1).max() for point in points)
 
 
 def frame(strike, dip, rake=0.0):
-    """Two axes in a plane and its upward normal; x points east, y north. Strike is clockwise from north, the plane dips
-    to the right of it; the first axis is the strike turned upwards by the rake. Degrees."""
+    """Returns two axes in a plane and its upward normal. x points to the east, y to the north; angles are in degrees.
+
+    The strike is clockwise from north, and the plane dips to its right. The first axis is the strike direction, turned
+    upwards by the rake."""
     s, d, r = np.radians([strike, dip, rake])
     along = np.array([np.sin(s), np.cos(s), 0])
     normal = np.array([np.sin(d) * np.cos(s), -np.sin(d) * np.sin(s), np.cos(d)])
@@ -132,20 +135,20 @@ def frame(strike, dip, rake=0.0):
 
 
 def regular(centre, first, second, n):
-    """n points of the ellipse with these half axes."""
+    """Returns n points of the ellipse with the half axes `first` and `second`."""
     angle = 2 * np.pi * np.arange(n) / n
     return np.asarray(centre) + np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second)
 
 
 def ellipse(centre, radii, strike, dip, rake, n=32):
-    """A polygon of n corners with the area of the ellipse."""
+    """Returns a polygon with n corners and the area of the ellipse."""
     first, second, _ = frame(strike, dip, rake)
     scale = np.sqrt(2 * np.pi / n / np.sin(2 * np.pi / n))
     return regular(centre, scale * radii[0] * first, scale * radii[1] * second, n)
 
 
 def check_line(line, tolerance):
-    """Refuses a polyline that has no length or crosses itself."""
+    """Raises an error for a polyline without length or with a self-intersection."""
     if not np.isfinite(line.points).all():
         refuse(line, "has a coordinate that is no finite number")
     length = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
@@ -157,7 +160,7 @@ def check_line(line, tolerance):
 
 
 def check_polygon(polygon, tolerance):
-    """Refuses a polygon in 3D without area, not plane, or crossing itself."""
+    """Raises an error for a polygon without area, not plane, or with a self-intersection, in 3D."""
     points = polygon.points
     if not np.isfinite(points).all():
         refuse(polygon, "has a coordinate that is no finite number")
@@ -167,7 +170,7 @@ def check_polygon(polygon, tolerance):
     if edge.min() <= tolerance:
         k = int(np.argmin(edge))
         refuse(polygon, f"corners {k + 1} and {(k + 1) % len(points) + 1} are {edge.min():.3g} m apart, the tolerance is {tolerance:.3g} m")
-    _, _, axes = np.linalg.svd(points - points.mean(axis=0))  # of best fit, also where the polygon crosses itself
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0))  # best fit, valid with self-intersections
     height = abs((points - points.mean(axis=0)) @ axes[2]).max()
     if height > tolerance:
         refuse(polygon, f"is not plane: a corner is {height:.3g} m from the plane of best fit, the tolerance is {tolerance:.3g} m")

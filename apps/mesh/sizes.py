@@ -1,4 +1,6 @@
-"""How long edges of cells are to be: lengths at points, from which they grow in proportion to the distance."""
+"""Sizes of cells: required lengths of edges at points.
+
+Between points the length grows in proportion to the distance."""
 from collections import Counter
 
 import numpy as np
@@ -7,13 +9,13 @@ from domain import in_polygon
 from shapely.geometry import Point
 from shapes import NetworkError, diameter
 
-TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # size at tips / size at the fracture, where none is given
-CELL = {2: np.sqrt(3) / 4, 3: 1 / (6 * np.sqrt(2))}  # area or volume of a regular cell with edges of 1
-LEAST_RATIO = {2: 1 / 20, 3: 1 / 8}  # narrow gaps are resolved down to this
+TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # default size at tips / size at the fracture
+CELL = {2: np.sqrt(3) / 4, 3: 1 / (6 * np.sqrt(2))}  # area or volume of a regular cell with edges of length 1
+LEAST_RATIO = {2: 1 / 20, 3: 1 / 8}  # smallest size in narrow gaps / size at the fractures
 
 
 class Sizes:
-    """`points` (n, 3) with the `sizes` (n,) that are asked for there; `at_edge` of each edge of the plan."""
+    """Required `sizes` (n,), m, at `points` (n, 3). `at_edge` contains the size of each edge of the plan."""
 
     def __init__(self, plan):
         self.plan, self.network = plan, plan.network
@@ -38,8 +40,10 @@ class Sizes:
         return min(self.network.size, self.network.relative_size * length)
 
     def expected_cells(self):
-        """About how many cells there will be, by the entry that asks for them: of each edge, point and surface the integral
-        of 1 / (volume of a regular cell) over the space in which edges of cells grow from its size to the largest."""
+        """Returns the expected number of cells caused by each entry, {entry: number}.
+
+        The number is the integral of 1 / (volume of a regular cell) around each edge, point and surface. The
+        integral extends over the region in which the length of edges grows from the given size to the largest."""
         network, dim, largest, found = self.network, self.plan.dim, self.network.size, Counter()
         found["size"] = network.domain.volume / largest**dim
 
@@ -72,7 +76,7 @@ class Sizes:
         return {entry: n / CELL[dim] for entry, n in found.items()}
 
     def check_number(self):
-        """Refuses sizes that ask for more cells than anyone can want."""
+        """Raises an error if the expected number of cells exceeds the limit."""
         cells, most = self.expected_cells(), self.network.most_cells
         n, entry = sum(cells.values()), max(cells, key=cells.get)
         if n > most:
@@ -112,7 +116,7 @@ class Sizes:
                 self.add(self.plan.points[p], self.network.size_at["intersections"])
 
     def take_surfaces(self):
-        """Points inside of surfaces, where edges are far."""
+        """Adds points inside of surfaces, far from their edges."""
         for k, surface in enumerate(self.plan.surfaces):
             size = self.of_owner[k]
             if surface.feature.kind == "boundary":
@@ -127,7 +131,7 @@ class Sizes:
                 self.add(surface.plane.outside(grid), size)
 
     def take_gaps(self):
-        """Where edges, or in 3D points and surfaces, that do not meet come closer than their size."""
+        """Adds sizes where edges that do not meet are closer than their size; in 3D also for points and surfaces."""
         reach = self.at_edge.max()
         i, j = near_pairs(self.segments.min(axis=1), self.segments.max(axis=1), reach)
         apart = ~(self.edges[i][:, :, None] == self.edges[j][:, None, :]).any(axis=(1, 2))
@@ -163,7 +167,7 @@ class Sizes:
 
 
 def special(plan):
-    """Where fractures end in the rock, and where several meet: points in 2D, edges in 3D."""
+    """Returns the tips of fractures in the rock and the intersections: points in 2D, edges in 3D."""
     if plan.dim == 3:
         tips, intersections = set(), set()
         for edge, of in plan.edges.items():
@@ -184,7 +188,7 @@ def special(plan):
 
 
 def is_side(plan, edge, owner):
-    """Whether an edge lies on the rim of its surface."""
+    """Returns whether an edge lies on the rim of its surface."""
     surface = plan.surfaces[owner]
     middle = surface.plane.inside(0.5 * (plan.points[edge[0]] + plan.points[edge[1]]))
     return surface.shape.boundary.distance(Point(middle)) <= 10 * plan.tolerance

@@ -6,8 +6,10 @@ from shapes import NetworkError, Plane
 
 
 class Surface:
-    """A plane polygon, perhaps with holes, of a feature. `rings` are its corners, which may lie off the plane by the
-    tolerance; `shape` is the polygon in coordinates of the plane."""
+    """Plane polygon of a feature, possibly with holes.
+
+    rings  corners, within the tolerance of the plane
+    shape  polygon in coordinates of the plane"""
 
     def __init__(self, feature, plane, rings):
         self.feature, self.plane, self.rings = feature, plane, rings
@@ -25,7 +27,7 @@ class Surface:
         return cls(feature, plane, [plane.outside(np.array(ring.coords[:-1])) for ring in (shape.exterior, *shape.interiors)])
 
     def sides(self):
-        """Segments (n, 2, 3) around it."""
+        """Returns the segments (n, 2, 3) of all rings."""
         return np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in self.rings])
 
     def holds(self, point, tolerance):
@@ -33,16 +35,18 @@ class Surface:
 
 
 def moved_onto(surface, others, tolerance):
-    """The surface with corners that are closer to one of the others than the tolerance moved onto it, in its own plane;
-    and how far (m) for the sake of which: [(distance, other)]. What would move by much more is left."""
+    """Moves corners onto other surfaces closer than the tolerance, within the plane of the surface.
+
+    Returns the new surface, and [(distance in m, other surface)] of the movements. Corners that would move by more
+    than 4 tolerances stay."""
     rings, told = [ring.copy() for ring in surface.rings], []
     close = [o for o in others if o is not surface and np.all(o.low <= surface.high + tolerance) and np.all(o.high >= surface.low - tolerance)]
-    slopes = [surface.plane.axes @ o.plane.normal for o in close]  # of the height over the other along both axes
+    slopes = [surface.plane.axes @ o.plane.normal for o in close]  # gradients of the height above the other planes, along both axes
     for ring in rings:
         for k, corner in enumerate(ring):
             near = [(o.plane.height(corner), slope, o) for o, slope in zip(close, slopes)
                     if abs(o.plane.height(corner)) <= tolerance < 4 * tolerance * np.linalg.norm(slope) and o.holds(corner, tolerance)]
-            near = near[:2]  # two planes fix a corner
+            near = near[:2]  # two planes determine a corner
             height = np.array([h for h, _, _ in near])
             if not near or abs(height).max() < 1e-12 * np.linalg.norm(surface.high - surface.low):
                 continue
@@ -54,14 +58,16 @@ def moved_onto(surface, others, tolerance):
 
 
 def heights(surface, plane, tolerance):
-    """Of the corners of each ring above a plane; what is within the tolerance is on it."""
+    """Returns the heights of the corners of each ring above a plane. Heights within the tolerance are 0."""
     all_heights = [plane.height(ring) for ring in surface.rings]
     return [np.where(abs(height) <= tolerance, 0, height) for height in all_heights]
 
 
 def chords(surface, height, along, tolerance):
-    """Where a line in the plane of a surface runs through it: [((s0, point), (s1, point)), ...] with s along the line;
-    `height` of the corners tells on which side of the line they are. Touched in a point, s0 = s1."""
+    """Returns the intersections of a line with a surface in the same plane: [((s0, point), (s1, point)), ...].
+
+    s is the coordinate along the line, with s0 = s1 for a single point. The signs of `height` give the side of the line
+    for each corner."""
     hits = []
     for ring, h in zip(surface.rings, height):
         for k in range(len(ring)):
@@ -83,8 +89,7 @@ def chords(surface, height, along, tolerance):
 
 
 def traces(one, other, tolerance):
-    """Pairs of points, the ends of the segments in which two surfaces that are not parallel meet; both alike where they
-    touch in a point."""
+    """Returns the segments [(begin, end), ...] in which two nonparallel surfaces meet, with begin = end for a point."""
     on_other, on_one = heights(one, other.plane, tolerance), heights(other, one.plane, tolerance)
     for height in (on_other, on_one):
         if all((h > 0).all() for h in height) or all((h < 0).all() for h in height):
@@ -103,13 +108,13 @@ def traces(one, other, tolerance):
 
 
 def are_level(one, other, tolerance):
-    """Whether the corners of the smaller of two surfaces lie in the plane of the other."""
+    """Returns whether the smaller surface lies in the plane of the larger, within the tolerance."""
     small, large = sorted((one, other), key=lambda surface: surface.shape.area)
     return all((h == 0).all() for h in heights(small, large.plane, tolerance))
 
 
 def polygons_of(shape):
-    """The polygons in a shape of any kind, as a list."""
+    """Returns the polygons in a shape of any type."""
     if shape.geom_type == "Polygon":
         return [shape] if shape.area > 0 else []
     return [part for piece in getattr(shape, "geoms", []) for part in polygons_of(piece)]
@@ -122,14 +127,15 @@ def lines_of(shape):
 
 
 def overlap(one, other, tolerance):
-    """Whether two level surfaces have a part in common that is wider than the tolerance. Both are made smaller by half of
-    it, since the intersection of polygons whose sides differ by round-off can be wrong in GEOS."""
+    """Returns whether two surfaces in one plane overlap by more than the tolerance.
+
+    Both are reduced by half of the tolerance, since GEOS can fail for polygons with sides that differ by round-off."""
     rings = [one.plane.inside(ring) for ring in other.rings]
     return one.shape.buffer(-0.5 * tolerance).intersects(Polygon(rings[0], rings[1:]).buffer(-0.5 * tolerance))
 
 
 def without(surface, others, tolerance):
-    """What others, level with it, leave of a surface: a list. Its new sides are off theirs by less than is joined."""
+    """Returns the parts of a surface outside of others in the same plane. The gaps are smaller than the tolerance."""
     left = surface.shape.buffer(0)
     taken = [Polygon(surface.plane.inside(o.rings[0]), [surface.plane.inside(r) for r in o.rings[1:]]).buffer(0.5 * tolerance) for o in others]
     left = left.difference(unary_union(taken))
@@ -137,7 +143,7 @@ def without(surface, others, tolerance):
 
 
 def angle_between(one, other, point, along):
-    """The smallest angle (degree) between half planes of two surfaces at a point in which they meet along a line."""
+    """Returns the smallest angle, in degrees, between two surfaces at a point of their common line."""
     step = 1e-3 * min(np.linalg.norm(s.high - s.low) for s in (one, other))
     directions = []
     for surface in (one, other):

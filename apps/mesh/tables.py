@@ -1,4 +1,4 @@
-"""Tables of fractures: CSV of lines, polygons and ellipses."""
+"""Tables of fractures: CSV files of points, lines, polygons and ellipses."""
 import csv
 import math
 import os
@@ -9,24 +9,24 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from shapes import MOST, Errors, NetworkError, ellipse
 
-MOST_CHARACTERS = 2 * 10**8  # of a file; some million fractures
-SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # that are none
+MOST_CHARACTERS = 2 * 10**8  # in a file; some million fractures
+SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # unsupported separators
 
 
 @dataclass
 class Row:
-    """A fracture of a table."""
-    title: str  # in messages
+    """Fracture of a table."""
+    title: str  # for messages
     points: np.ndarray
-    number: str  # or a text; those of one number are one fracture, unless they have a name
-    name: str = ""  # how results call it
-    properties: dict = field(default_factory=dict)  # texts by the titles of further columns; see named_columns()
+    number: str  # number or text; rows of the same number are one fracture, unless they have a name
+    name: str = ""  # name in results
+    properties: dict = field(default_factory=dict)  # {title of a further column: text}
 
 
 @dataclass
 class Table:
-    fractures: list = field(default_factory=list)  # rows
-    box: tuple = None  # lowest and highest corner of the domain, if the file has them
+    fractures: list = field(default_factory=list)  # of type Row
+    box: tuple = None  # lowest and highest corner of the domain, if given
     errors: list = field(default_factory=list)
 
     def add(self, place, points, number=""):
@@ -35,7 +35,7 @@ class Table:
 
 
 def numbers(words, place, table, columns):
-    """The words as finite numbers, or None and an error with the column of the file."""
+    """Returns the words as finite numbers, or None. Appends an error with the column of the file."""
     found = []
     for k, word in zip(columns, words):
         try:
@@ -53,7 +53,7 @@ def numbers(words, place, table, columns):
 
 
 def number(word):
-    """As float() reads it, but for 1_000."""
+    """Converts a word as float(), but rejects underscores such as 1_000."""
     return float(word.replace("_", "no number"))
 
 
@@ -66,12 +66,12 @@ def is_number(word):
 
 
 def read_lines(path):
-    """The lines of a file; refuses what may have no end, such as a pipe or a device."""
+    """Returns the lines of a file. Rejects pipes and devices, which may have no end."""
     def refuse(why):
         raise NetworkError(f"{path}: cannot be read: {why}", [path]) from None
     try:
         mode = os.stat(path).st_mode
-        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # open() tells of a folder
+        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # open() reports folders
             refuse("is no regular file, but a pipe, a socket or a device")
         with open(path, encoding="utf-8-sig") as file:
             text = file.read(MOST_CHARACTERS + 1)
@@ -83,13 +83,13 @@ def read_lines(path):
 
 
 def columns(line):
-    """The words of a line, which may be in quotes, without a comment; None where there are none."""
+    """Returns the words of a line without comment, possibly in quotes; None for an empty line."""
     line = line.partition("#")[0].strip()
     return next(csv.reader([line], skipinitialspace=True)) if line else None
 
 
 def other_separator(line, words):
-    """The separator of columns where commas are none, in words, or None. A name may come before the numbers."""
+    """Returns the name of an unsupported separator of columns, or None. A name may precede the numbers."""
     line = line.partition("#")[0].strip()
     if ";" in line:
         return SEPARATORS[";"]
@@ -98,7 +98,7 @@ def other_separator(line, words):
     if len(words) == 1 and "\t" in line:
         return SEPARATORS["\t"]
     for separator, name in SEPARATORS.items():
-        parts = [part.strip().replace(",", ".") for part in line.split(separator)]  # decimal commas, perhaps
+        parts = [part.strip().replace(",", ".") for part in line.split(separator)]  # possibly decimal commas
         if len(parts) > 2 and all(map(is_number, parts[1:])):
             return name
     return None
@@ -106,25 +106,29 @@ def other_separator(line, words):
 
 SHAPE = {"points": ["x", "y"], "lines": ["x0", "y0", "x1", "y1"], "polygons": ["x0", "y0", "z0", "x1", "y1", "z1", "x2", "y2", "z2"],
          "ellipses": ["cx", "cy", "cz", "r1", "r2", "rake", "strike", "dip"]}  # titles of columns
-NUMBER = ("id", "fid", "number")  # titles of the number of a fracture; the first of these counts
-UNITS = {"rake": "deg", "strike": "deg", "dip": "deg"}  # others are in m
+NUMBER = ("id", "fid", "number")  # titles of the number of a fracture, by priority
+UNITS = {"rake": "deg", "strike": "deg", "dip": "deg"}  # other columns: m
 SPELLINGS = {"m": ("", "m", "meter", "meters", "metre", "metres"), "deg": ("", "deg", "degree", "degrees", "°")}
-GOES_ON = "..."  # the last title of polygons with any number of corners
+GOES_ON = "..."  # last title of polygons with any number of corners
 
 
 class Columns:
-    """The columns of a table, from 0 on: `shape` in the order of SHAPE, the number, and others as (column, title,
-    unit). `count` is that of columns; None: any, the rest being further corners."""
+    """Columns of a table, from 0.
+
+    shape  columns of the geometry, in the order of SHAPE
+    number column of the number
+    named  other columns (column, title, unit)
+    count  number of columns; None for any number, with further corners"""
 
     def __init__(self, kind, dim=2):
-        """Without titles; of points in so many dimensions."""
+        """Columns of a table without titles. Points have `dim` coordinates."""
         self.kind, self.dim, self.titles, self.named = kind, dim, [], []
         self.number = 0 if kind in ("lines", "points") else None
         self.shape = {"points": range(1, 1 + dim), "lines": range(1, 5), "polygons": range(0), "ellipses": range(8)}[kind]
         self.count = {"points": 1 + dim, "lines": 5, "polygons": None, "ellipses": 8}[kind]
 
     def of(self, words):
-        """The columns of the shape in a row, as long as it is."""
+        """Returns the columns of the geometry in a row of this length."""
         return [*self.shape, *(range(len(self.titles), len(words)) if self.count is None else ())]
 
     def text(self, words, k):
@@ -136,8 +140,9 @@ class Columns:
 
 
 class TitledColumns(Columns):
-    """By the titles in the first line: those of the shape, `id`, `fid` or `number`, `name`, and entries of a joint with
-    a unit or without, as `initial aperture [mm]`."""
+    """Columns with titles in the first line: geometry, `id`, `fid` or `number`, `name`, and entries of a joint.
+
+    A title may contain a unit, such as `initial aperture [mm]`."""
 
     def __init__(self, kind, words, path, line, dim=2):
         super().__init__(kind, dim)
@@ -172,7 +177,9 @@ class TitledColumns(Columns):
                 self.refuse(f"columns {self.titles.index(title) + 1} and {k + 1} have the same title, \"{title}\"")
 
     def shape_titles(self):
-        """Those of the shape; of polygons with as many corners as there are titles."""
+        """Returns the titles of the geometry.
+
+        The largest index in the titles gives the number of corners of polygons."""
         needed = SHAPE[self.kind] if self.kind != "points" else list("xyz"[:self.dim])
         if self.kind == "polygons":
             of_corners = (re.fullmatch(r"[xyz](\d{1,6})", title) for title in self.titles)
@@ -195,12 +202,12 @@ class TitledColumns(Columns):
             self.refuse(f"the column \"{title}\" is in {unit}, expected {expected}")
 
     def missing(self, words):
-        """The first empty column of the shape, from 0 on, of a row of lines or ellipses; None if all have a text."""
+        """Returns the first empty column of the geometry in a row of lines or ellipses, from 0, or None."""
         return next((k for k in self.shape if not self.text(words, k)), None)
 
 
 def parted_title(word):
-    """The title and the unit in brackets."""
+    """Returns the title and the unit in brackets."""
     return re.fullmatch(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", word, re.DOTALL).groups("")
 
 
@@ -236,7 +243,7 @@ ROWS = {"points": points_row, "lines": lines_row, "polygons": polygons_row, "ell
 
 
 def wrong_columns(words, columns, of, table):
-    """The fault of the columns of a row, or None."""
+    """Returns the error in the number of columns of a row, or None."""
     kind, n = columns.kind, len(words)
     if columns.titles and columns.count is not None and n > columns.count:
         return f"has {n} columns, the titles are {columns.count}"
@@ -258,7 +265,7 @@ def read_row(words, columns, place, table):
     """Adds the fracture of a row, or an error."""
     of = columns.of(words)
     if columns.kind == "polygons":
-        while of and not columns.text(words, of[-1]):  # polygons with fewer corners
+        while of and not columns.text(words, of[-1]):  # polygon with fewer corners
             of.pop()
     wrong = wrong_columns(words, columns, of, table)
     if wrong:
@@ -281,7 +288,7 @@ def are_titles(words):
 
 
 def rows_of(path):
-    """(line, words) of the rows of a CSV. Empty lines, rows of commas and comments after # are passed over."""
+    """Yields (line number, words) of the rows of a CSV file. Skips empty rows and comments after #."""
     for k, line in enumerate(read_lines(path), 1):
         words = columns(line)
         if words is None or not any(word.strip() for word in words):
@@ -294,8 +301,9 @@ def rows_of(path):
 
 
 def read_csv(path, kind, dim=2):
-    """A table of fractures, a row each; of points in so many dimensions the points of one number are one. A first line
-    without numbers has the titles of the columns."""
+    """Returns the table of a CSV file. A first line without numbers contains the titles of the columns.
+
+    Rows of points with the same number form one fracture. Points have `dim` coordinates."""
     table, known = Table(), None
     for k, words in rows_of(path):
         place = f"{path}: line {k}"
@@ -303,14 +311,16 @@ def read_csv(path, kind, dim=2):
             known = TitledColumns(kind, words, path, k, dim)
             continue
         known = known or Columns(kind, dim)
-        while len(words) > 1 and not words[-1].strip():  # commas at the end
+        while len(words) > 1 and not words[-1].strip():  # trailing commas
             words.pop()
         read_row(words, known, place, table)
     return joined_points(table, dim) if kind == "points" else table
 
 
 def joined_points(table, dim):
-    """One fracture of the rows of each number, in their order; the first has its name and further columns."""
+    """Joins the points of each number to one fracture, in their order.
+
+    The first row gives the name and other columns."""
     of_number = {}
     for row in table.fractures:
         of_number.setdefault(row.number, []).append(row)
@@ -324,17 +334,17 @@ def joined_points(table, dim):
 
 
 def has_points(path, dim):
-    """Whether a file has a point a line: by its titles, or without these by the number of columns."""
+    """Returns whether each row is a point, from the titles, or from the number of columns without titles."""
     _, words = next(rows_of(path), (0, []))
     if not are_titles(words):
         return len(words) == 1 + dim
     titles = {re.sub("^(?:pt|point)_", "", parted_title(word)[0].lower()) for word in words}
-    others = {"dip", "strike", "radius", "r1"}  # of discs
+    others = {"dip", "strike", "radius", "r1"}  # titles of discs
     return {"x", "y"} <= titles and not titles & others
 
 
 def kind_of(path):
-    """By the titles, or without these by the number of columns."""
+    """Returns the kind of the rows, from the titles, or from the number of columns without titles."""
     _, words = next(rows_of(path), (0, []))
     titles = {parted_title(word)[0].lower() for word in words} if are_titles(words) else set()
     if "cx" in titles:
@@ -343,7 +353,7 @@ def kind_of(path):
 
 
 def complete(table, path):
-    """The table; refuses one with errors or without fractures."""
+    """Returns the table. Raises the errors, or an error for a table without fractures."""
     if not table.errors and not table.fractures:
         table.errors.append(f"{path}: has no fracture")
     Errors(table.errors).throw([path])
@@ -351,5 +361,7 @@ def complete(table, path):
 
 
 def read_table(path, kind, dim=2):
-    """The fractures in a file; refuses it with a line for each thing that is wrong. None is the kind of the columns."""
+    """Returns the fractures in a file.
+
+    All errors are raised together. With kind = None the columns determine the kind."""
     return complete(read_csv(path, kind or kind_of(path), dim), path)
