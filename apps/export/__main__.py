@@ -1,7 +1,8 @@
-"""Fractures of a run with its results as attributes, for geographic information systems: GeoJSON or a shapefile.
+"""Exports the fractures of a run, with results as attributes, for geographic information systems.
 
-DIR is the output directory of `sprekk run`, FILE is NAME.geojson or NAME.shp. Each trace is a line, in 3D each
-fracture a polygon, or a polygon of each face where it is not plane. All is in m and Pa, compression negative."""
+DIR is the output directory of `sprekk run`. FILE is NAME.geojson or NAME.shp. In 2D each trace is a line. In 3D each
+fracture is a polygon, or several polygons (one for each face) if it is not plane. Units are m and Pa; compression is
+negative."""
 import argparse
 import re
 import sys
@@ -35,7 +36,7 @@ def write_geojson(path, found, plane, crs):
 
 
 def geographic_library(path):
-    """GDAL's modules ogr and osr."""
+    """Returns GDAL's modules ogr and osr."""
     try:
         from osgeo import ogr, osr
     except ImportError:
@@ -46,7 +47,7 @@ def geographic_library(path):
 
 
 def metric_system(path, crs):
-    """The coordinate system of EPSG:N; refuses one that is unknown or not in metres."""
+    """Returns the coordinate system of EPSG:N. Error if it is unknown or not in metres."""
     if not re.fullmatch(r"EPSG:\d{4,6}", crs):
         raise PlotError(f"--crs {crs}: is no coordinate system, expected EPSG:NUMBER, such as EPSG:25832")
     _, osr = geographic_library(path)
@@ -81,7 +82,7 @@ def write_shapefile(path, found, plane, crs):
 
 
 def column(ogr, name, values):
-    """Numbers have a fixed number of decimals in shapefiles: as many as there is room for beside the largest."""
+    """Returns the field definition of an attribute. Numbers have the largest fixed number of decimals that fits."""
     texts = any(isinstance(value, str) for value in values)
     definition = ogr.FieldDefn(name, ogr.OFTString if texts else ogr.OFTReal)
     if not texts:
@@ -92,7 +93,7 @@ def column(ogr, name, values):
 
 
 def geometry(ogr, shapes, plane):
-    """All shapes of a fracture in one geometry."""
+    """Returns one geometry of all shapes of a fracture."""
     whole = ogr.Geometry(ogr.wkbMultiLineString if plane else ogr.wkbMultiPolygon25D)
     for shape in shapes:
         points = ogr.Geometry(ogr.wkbLineString if plane else ogr.wkbLinearRing)
@@ -106,7 +107,7 @@ def geometry(ogr, shapes, plane):
     return whole
 
 
-SIDECARS = (".shx", ".dbf", ".prj", ".cpg")  # files of an earlier shapefile
+SIDECARS = (".shx", ".dbf", ".prj", ".cpg")  # further files of a shapefile
 WRITERS = {".geojson": write_geojson, ".json": write_geojson, ".shp": write_shapefile}
 
 
@@ -130,7 +131,7 @@ def export(options):
 
 
 def put(write, path, *content):
-    """Writes all files in a scratch folder and moves them to their place: an error leaves no part behind."""
+    """Writes all files to a temporary folder and then moves them, so that an error leaves no incomplete files."""
     with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
         write(Path(scratch) / path.name, *content)
         for ending in SIDECARS if write is write_shapefile else ():
@@ -143,7 +144,7 @@ def main(words=None):
     options = arguments(words)
     try:
         print(export(options))
-    except (PlotError, OSError, RuntimeError) as error:  # the last by GDAL
+    except (PlotError, OSError, RuntimeError) as error:  # RuntimeError: from GDAL
         print(f"sprekk export: {error}", file=sys.stderr)
         return 1
     return 0

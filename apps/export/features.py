@@ -1,4 +1,4 @@
-"""The fractures of a step as shapes with attributes."""
+"""Fractures of a step as shapes with attributes."""
 import json
 from collections import namedtuple
 
@@ -9,13 +9,13 @@ from bulk import rim
 from orientations import area_vector
 from read import PlotError
 
-# Lines or rings of points (n, 3), and values by names of at most ten letters, as shapefiles have them.
+# Lines or rings of points (n, 3), and {name: value} with names of at most ten letters, the limit of shapefiles.
 Feature = namedtuple("Feature", "shapes attributes")
-STRAIGHT = 1e-9  # sine of an angle that is none
+STRAIGHT = 1e-9  # sine of an angle that counts as zero
 
 
 def corners_of(points, closed):
-    """The points of a line or ring at which it turns, and the ends of a line."""
+    """Returns the points of a line or ring with a change of direction, and the ends of a line."""
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     sizes = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
     turns = np.linalg.norm(np.cross(before, after), axis=1) > STRAIGHT * sizes
@@ -25,7 +25,7 @@ def corners_of(points, closed):
 
 
 def line(surface, faces):
-    """The points of a trace, from end to end, of its faces one after the other."""
+    """Returns the points of a trace from end to end; the faces are consecutive."""
     ends = [surface.points[surface.polygons[face][:2]] for face in faces]
     tolerance = 1e-9 * np.max(np.ptp(surface.points, axis=0))
     if len(ends) > 1 and np.min(np.linalg.norm(ends[1] - ends[0][0], axis=1)) < tolerance:
@@ -37,11 +37,11 @@ def line(surface, faces):
 
 
 def ring(surface):
-    """The outline of a plane fracture, or None of one that is not plane or has several outlines."""
+    """Returns the outline of a plane fracture, or None if it is not plane or has several outlines."""
     normals = np.array([area_vector(x) for x in surface.corners()])
     mean = normals.sum(axis=0)
     across = np.linalg.norm(np.cross(normals, mean), axis=1)
-    if np.any(across >= 1e-6 * np.linalg.norm(normals, axis=1) * np.linalg.norm(mean)):  # also where the mean is zero
+    if np.any(across >= 1e-6 * np.linalg.norm(normals, axis=1) * np.linalg.norm(mean)):  # >= also for a zero mean
         return None
     edges = surface.points[rim(surface, None)]
     place = np.unique(
@@ -56,7 +56,7 @@ def ring(surface):
 
 
 def attributes(data, faces, sizes, name, group, plane):
-    """Means over the length or area, largest values, and parts of it by state."""
+    """Returns means over length or area, maxima, and shares of the contact states."""
 
     def mean(values):
         return float(np.average(values, weights=sizes))
@@ -84,7 +84,7 @@ def attributes(data, faces, sizes, name, group, plane):
 
 
 def groups(surface, sets, singles, plane):
-    """(name, set, faces) of each single fracture where the run tells them; else of each trace, in 3D of each set."""
+    """Yields (name, set, faces) of each single fracture if the run has them, else of each trace (3D: set)."""
     data = surface.cell_data
     if singles and "single fracture" in data:
         for k, one in enumerate(singles):
@@ -101,7 +101,7 @@ def groups(surface, sets, singles, plane):
 
 
 def shapes(part, plane):
-    """Of the faces of one fracture."""
+    """Returns the shapes of the faces of one fracture."""
     if plane:
         return [line(part, chain) for chain, _ in fractures.chains(part)]
     outline = ring(part)
@@ -109,7 +109,7 @@ def shapes(part, plane):
 
 
 def of_run(directory, time=None):
-    """Of the step that was written last, or nearest to a time; and whether the problem is plane."""
+    """Returns the features of the last written step, or the one nearest to `time`, and whether the problem is 2D."""
     content = read.results(directory)
     written = read.written_steps(directory, "fractures")
     if not written:
@@ -136,7 +136,7 @@ def of_run(directory, time=None):
 
 
 def as_geojson(found, plane, crs):
-    """A text. Without a coordinate system "crs" is null, which means a local one."""
+    """Returns the text of a GeoJSON file. Without a coordinate system, "crs" is null for a local one."""
 
     def coordinates(shape):
         points = shape[:, : 2 if plane else 3].tolist()

@@ -1,16 +1,16 @@
 """Fits entries of a joint to a measured curve.
 
-The point driver runs SCENE again and again, with other values of the entries that are named, until the sum of squares of
-the differences from CSV is least. CSV has a line of titles with units, such as `shear displacement (mm),shear stress
-(MPa)`. What is measured along what is said by columns and outputs of `sprekk point`, a minus before an output where
-signs differ, "change of" before it where the change since the start was measured:
+The point driver runs SCENE with different values of the given entries, to minimise the sum of squared differences from
+CSV. The first line of CSV contains titles with units, such as `shear displacement (mm),shear stress (MPa)`. The
+arguments --along and --match assign columns of CSV to outputs of `sprekk point`. A minus in front of an output changes
+its sign. The words "change of" in front of an output subtract its initial value:
 
   ./sprekk fit test.csv scene.xml --along "shear displacement=jump_t" --match "shear stress=traction_t"
       --match "normal stress=-traction_n" --parameter "residual friction angle"
       --parameter "joint wall strength=50e6..200e6" --parameter "Point.column normal stiffness=1e9..1e11"
 
-Printed are the values with intervals of 95 % confidence, what the data cannot tell apart, and how far the curves differ;
-a picture, CSV's name with _fit.png, shows both."""
+The output contains the values with 95 % confidence intervals, strongly correlated entries, and the differences of the
+curves. The picture with the name of CSV and the ending _fit.png shows both curves."""
 import argparse
 import sys
 from pathlib import Path
@@ -21,7 +21,7 @@ from estimate import LEVEL, Parameter, fit
 from measured import FitError, factor, read
 from point import Point, Specification, bounds, start_of
 
-TOLD_APART = 0.95  # a correlation beyond it is told
+TOLD_APART = 0.95  # larger correlations are reported
 
 
 def arguments(words):
@@ -39,12 +39,12 @@ def arguments(words):
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="override an entry of the scene")
     parser.add_argument("--output", type=Path, metavar="DIR", help="write the picture there")
     parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: 150)")
-    parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # sprekk itself, by the launcher
+    parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # path of the program, set by the launcher
     return parser.parse_args(words)
 
 
 def parameter(text, point, specification):
-    """(path, Parameter) of `NAME` or `NAME=LOW..HIGH`."""
+    """Returns (path, Parameter) of `NAME` or `NAME=LOW..HIGH`."""
     name, given, limits = (word.strip() for word in text.partition("="))
     path = point.path_of(name)
     unit, default, allowed = specification.entry(path)
@@ -66,7 +66,7 @@ def parameter(text, point, specification):
 
 
 def fitted(point, comparison, named):
-    """The estimate and its curve. Several columns count by their scatter about a first fit."""
+    """Returns the estimate and its curve. Several columns are weighted by their scatter about a first fit."""
     paths, parameters = [path for path, _ in named], [p for _, p in named]
 
     def model(values):
@@ -90,7 +90,7 @@ def fitted(point, comparison, named):
 
 
 def told(estimate, parameters, comparison, curve):
-    """The lines that are printed."""
+    """Yields the lines of the output."""
     width = max(len(p.name) for p in parameters)
     for p, value, interval, why in zip(parameters, estimate.values, estimate.intervals, estimate.why):
         what = f"{interval[0]:.6g} .. {interval[1]:.6g}" if interval else why
@@ -109,7 +109,7 @@ def told(estimate, parameters, comparison, curve):
 
 
 def difference(p, d):
-    """The root of the mean square, absolute and relative."""
+    """Returns the root mean square of the difference, absolute and relative, as text."""
     size, spread = float(np.sqrt(np.mean(d**2))), np.ptp(p.values[np.isfinite(p.values)])
     of_range = f", {100 * size / spread:.3g} % of its range" if spread else ""
     return f"root mean square difference {size:.4g} {'Pa' if 'traction' in p.output else 'm'}{of_range}"

@@ -1,4 +1,4 @@
-"""Measured columns against computed outputs along a third, and the residuals of all of them."""
+"""Comparison of measured columns with computed outputs, and their residuals."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +10,11 @@ UNITS = {"t": "s", "strength": "Pa", "jump": "m", "elastic_jump": "m", "plastic_
 
 @dataclass
 class Pair:
-    """A column of the CSV and the output that it is compared with, or its negative, or its change since the start."""
+    """Column of the CSV file and the output compared with it, or the change of the output since the start."""
     name: str
     output: str
     sign: int
-    values: np.ndarray  # measured, as the output is signed; SI
+    values: np.ndarray  # measured, in SI units, with the sign of the output
     is_change: bool = False
 
     def computed(self, curve):
@@ -23,7 +23,7 @@ class Pair:
 
 
 def pair(path, columns, text, option, outputs):
-    """Of `COLUMN=OUTPUT`, the output with a minus or `change of` before it, or both."""
+    """Returns the Pair of `COLUMN=OUTPUT`. A minus or `change of`, or both, may precede the output."""
     name, equals, output = (word.strip() for word in text.rpartition("="))
     if not equals:
         raise FitError(f'--{option} {text}: must be "COLUMN=OUTPUT", e.g. "shear stress=traction_t"')
@@ -43,7 +43,9 @@ def pair(path, columns, text, option, outputs):
 
 
 class Comparison:
-    """What is measured along `along`, beside the curves of a point driver. Rows beyond `until`, in SI, are predicted."""
+    """Measured columns along `along`, for comparison with curves of the point driver.
+
+    Rows beyond `until`, in SI units, are predicted and not fitted."""
 
     def __init__(self, path, along, matched, until=np.inf):
         self.path, self.along, self.matched = path, along, matched
@@ -63,7 +65,7 @@ class Comparison:
                         for p, rows in zip(matched, self.rows)]
 
     def beside(self, curve, p, rows):
-        """The computed values where there are measured ones; not finite beyond the end of the computed path."""
+        """Returns the computed values at the measured rows, NaN beyond the end of the computed path."""
         x = self.along.computed(curve)
         kept = np.concatenate([[True], np.diff(np.maximum.accumulate(x)) > 0]) if len(x) else []
         if len(x) == 0 or np.any(np.diff(x) < -1e-12 * np.max(np.abs(x))):
@@ -74,20 +76,20 @@ class Comparison:
         return np.where((wanted < x[0] - slack) | (wanted > x[-1] + slack), np.nan, values)
 
     def differences(self, curve, rows=None):
-        """Computed less measured, for each matched column; SI. In the rows that are fitted, or in others."""
+        """Returns computed minus measured values of each matched column, SI units, in the fitted rows or in `rows`."""
         return [self.beside(curve, p, which) - p.values[which] for p, which in zip(self.matched, rows or self.rows)]
 
     def residuals(self, curve):
         return np.concatenate([w * d for w, d in zip(self.weights, self.differences(curve))])
 
     def weigh_by_scatter(self, curve):
-        """Each column counts by its own scatter about the curve, at least a thousandth of its range."""
+        """Weights each column by its scatter about the curve, with a minimum of 0.001 of its range."""
         for k, (p, d) in enumerate(zip(self.matched, self.differences(curve))):
             least = 1e-3 * (np.ptp(p.values[self.rows[k]]) or 1)
             self.weights[k] = 1 / max(float(np.sqrt(np.mean(d**2))), least)
 
     def why_not(self, curve):
-        """Why a curve cannot be compared."""
+        """Returns the reason why a curve cannot be compared."""
         x = self.along.computed(curve)
         known = self.along.values[np.isfinite(self.along.values)]
         if np.any(np.diff(x) < -1e-12 * np.max(np.abs(x))):

@@ -1,19 +1,21 @@
-"""Least squares in scaled parameters, and how far the data determine them."""
+"""Least squares in scaled parameters, with confidence intervals."""
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import optimize, stats
 
-STEP = 1e-6  # of differences, in scaled parameters
-LEVEL = 0.95  # of the intervals
+STEP = 1e-6  # increment of differences, in scaled parameters
+LEVEL = 0.95  # confidence level of the intervals
 RANGE = 1e4
-AT_BOUND = 1e-8  # so near to a bound a parameter is at it
+AT_BOUND = 1e-8  # relative distance to a bound at which a parameter is at the bound
 
 
 @dataclass
 class Parameter:
-    """A number that is fitted; by its logarithm if it is positive without an upper bound, or its bounds leave 0 out, which
-    suits stiffnesses and strengths. Where a bound is 0 or infinite, RANGE about the start replaces it."""
+    """Fitted parameter.
+
+    A positive parameter without an upper bound, or with a positive lower bound, is fitted by its logarithm, as suits
+    stiffnesses and strengths. In this case start / RANGE and start * RANGE replace bounds that are 0 or infinite."""
     name: str
     start: float
     low: float = -np.inf
@@ -38,17 +40,17 @@ class Parameter:
 
 @dataclass
 class Estimate:
-    """Intervals are None where a parameter is at a bound, or the data do not determine it."""
+    """Result of a fit. The interval is None for a parameter at a bound, or not determined by the data."""
     values: list
     intervals: list
-    why: list  # there is no interval: text, or None
-    correlation: np.ndarray  # of the scaled parameters
+    why: list  # reason for a missing interval, or None
+    correlation: np.ndarray  # of scaled parameters
     residuals: np.ndarray
     evaluations: int
 
 
 class Residuals:
-    """r(x) in scaled parameters with its Jacobian by differences; not finite where the model has no state."""
+    """Residuals r(x) in scaled parameters, with a Jacobian by differences. NaN where the model has no state."""
 
     def __init__(self, model, parameters):
         self.model, self.parameters, self.count, self.last = model, parameters, 0, None
@@ -77,7 +79,7 @@ class Residuals:
 
 
 def covariance(J, residuals):
-    """Of the scaled parameters, and which of them the data do not determine."""
+    """Returns the covariance of scaled parameters, and a mask of parameters that the data do not determine."""
     n, m = J.shape
     norms = np.linalg.norm(J, axis=0)
     blind = norms <= 1e-10 * max(np.max(norms), 1e-300)
@@ -85,7 +87,7 @@ def covariance(J, residuals):
     _, s, V = np.linalg.svd(scaled[:, ~blind], full_matrices=False)
     lost = s <= 1e-7 * s[0] if s.size else s
     undetermined = blind.copy()
-    if np.any(lost):  # those with a part in a combination that has no effect
+    if np.any(lost):  # parameters that are part of a combination without effect
         undetermined[~blind] |= np.max(np.abs(V[lost]), axis=0) > 1e-3
     inverse = (V.T / np.where(lost, np.inf, s)**2) @ V
     C = np.zeros((m, m))
@@ -96,8 +98,10 @@ def covariance(J, residuals):
 
 
 def fit(model, parameters, most=60):
-    """The parameters whose residuals model([values]) have the least sum of squares, with intervals of confidence from
-    the linearised model: s^2 (J^T J)^-1 and Student's t, transformed back from logarithms."""
+    """Returns the Estimate with the least sum of squares of the residuals model([values]).
+
+    The confidence intervals are those of the linearised model, s^2 (J^T J)^-1 with Student's t, transformed back from
+    logarithms."""
     r = Residuals(model, parameters)
     x0 = np.array([p.scaled(p.start) for p in parameters])
     bounds = [[p.scaled(p.low) for p in parameters], [p.scaled(p.high) for p in parameters]]

@@ -1,4 +1,4 @@
-"""A measured curve: a CSV whose first line names its columns with their units, e.g. `shear displacement (mm)`."""
+"""Measured curve: a CSV file whose first line contains titles with units, e.g. `shear displacement (mm)`."""
 import csv
 import re
 
@@ -7,7 +7,7 @@ import units
 
 
 class FitError(Exception):
-    """What is wrong, in words that name the file and the place."""
+    """Invalid input. The message names the file and the place."""
 
 
 def read_lines(path):
@@ -20,7 +20,7 @@ def read_lines(path):
 
 
 def read(path):
-    """{name: (values in SI, unit's powers)}; an empty cell is no number, and left out of what it is compared with."""
+    """Returns {name: (values in SI units, powers of the unit)}. Empty cells are NaN and are not compared."""
     lines = read_lines(path)
     if len(lines) < 3:
         raise FitError(f"{path}: has {max(len(lines) - 1, 0)} rows of numbers, needs at least 2 below a line of titles")
@@ -33,12 +33,12 @@ def read(path):
 
 
 def factor(path, name):
-    """Of a column's unit to SI."""
+    """Returns the factor of a column's unit to SI."""
     return next(own for title, own, _ in titles(path, read_lines(path)) if title == name)
 
 
 def titles(path, lines):
-    """(name, factor to SI, unit's powers) of each column."""
+    """Returns (name, factor to SI, powers of the unit) of each column."""
     heads = []
     for title in lines[0][1]:
         found = re.fullmatch(r"\s*(.+?)\s*\(([^()]*)\)\s*", title)

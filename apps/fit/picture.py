@@ -1,4 +1,4 @@
-"""What was measured and what the fitted joint does, on the same axes."""
+"""Picture of the measured and the fitted curve."""
 import sys
 from pathlib import Path
 

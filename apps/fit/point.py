@@ -1,4 +1,4 @@
-"""The point driver as a model: what it computes for given entries of a scene, and what the specification says of them."""
+"""Point driver as a model: outputs for given entries of a scene, and the specification of these entries."""
 import csv
 import os
 import re
@@ -13,11 +13,11 @@ ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_d
 
 
 class Point:
-    """A scene of the point driver."""
+    """Scene of the point driver."""
 
     def __init__(self, program, scene, overrides=()):
         self.program, self.scene, self.overrides = program, scene, list(overrides)
-        self.reason = ""  # of the last path that was not computed to its end
+        self.reason = ""  # error of the last incomplete path
         try:
             self.root = xml.parse(scene).getroot()
         except (OSError, xml.ParseError) as error:
@@ -30,7 +30,7 @@ class Point:
                               env={**os.environ, **ALONE})
 
     def curve(self, settings):
-        """{output: values} of the path, as far as it was computed, and whether to its end."""
+        """Returns {output: values} of the computed part of the path, and whether it is complete."""
         sets = [*self.overrides, *(f"{path}={value:.17g}" for path, value in settings.items())]
         done = self.call("point", self.scene, *(word for entry in sets for word in ("--set", entry)))
         self.reason = done.stderr.strip() if done.returncode else ""
@@ -46,7 +46,7 @@ class Point:
         return place
 
     def text(self, path):
-        """What scene or overrides say of an entry; None if nothing."""
+        """Returns an entry of the overrides or the scene, or None."""
         for entry in reversed(self.overrides):
             if entry.partition("=")[0] == path:
                 return entry.partition("=")[2]
@@ -56,14 +56,14 @@ class Point:
         return None if found is None else found.get("value")
 
     def path_of(self, name):
-        """The path of an entry by its name, of the point's joint if it has no dot."""
+        """Returns the path of an entry. A name without dots is an entry of the point's joint."""
         if "." in name:
             return name
         return f"Materials.{self.text('Point.material')}.{name}"
 
 
 class Specification:
-    """Entries with units, defaults and bounds, as `sprekk reference` prints them."""
+    """Entries with units, defaults and bounds, from the output of `sprekk reference`."""
 
     def __init__(self, point):
         self.sections, place = {}, None
@@ -75,7 +75,7 @@ class Specification:
                 place[cells[0]] = cells[2:5]
 
     def entry(self, path):
-        """(unit, default, allowed)"""
+        """Returns (unit, default, allowed values)."""
         *names, name = path.split(".")
         section = "Materials > NAME" if names[:1] == ["Materials"] else " > ".join(names)
         known = self.sections.get(section)
@@ -93,7 +93,7 @@ def did_you_mean(name, known):
 
 
 def bounds(allowed):
-    """(low, high) of the words of the reference, e.g. `at least 0 and less than 90`."""
+    """Returns (low, high) of a text of the reference, e.g. `at least 0 and less than 90`."""
     number = r"(-?[\d.]+(?:e[-+]?\d+)?)"
     low, high = -np.inf, np.inf
     if allowed.startswith("positive"):
@@ -104,13 +104,13 @@ def bounds(allowed):
         low = float(found[1])
     if found := re.search(rf"(?:at most|less than) {number}", allowed):
         high = float(found[1])
-    if found := re.search(rf"less than {number}", allowed):  # that number itself is refused
+    if found := re.search(rf"less than {number}", allowed):  # exclusive bound
         high -= 1e-9 * abs(high)
     return low, high
 
 
 def start_of(point, path, unit, default, low, high):
-    """The number that the scene has, or the default, or the middle of finite bounds; None if there is none."""
+    """Returns the value in the scene, the default, or the middle of finite bounds; otherwise None."""
     text = point.text(path)
     found = units.number(text if text is not None else default, unit)
     if found is not None:

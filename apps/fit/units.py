@@ -1,9 +1,9 @@
-"""Numbers with units in SI: those of a CSV's header, of a scene and of the reference."""
+"""Conversion of numbers with units to SI, for CSV titles, scenes and the reference."""
 import re
 
 PREFIXES = {"": 1.0, "G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "n": 1e-9}
 DEGREE = 3.14159265358979323846 / 180
-#          factor, powers of m, kg, s, rad
+# factor, powers of m, kg, s, rad
 SYMBOLS = {"m": (1.0, (1, 0, 0, 0)), "g": (1e-3, (0, 1, 0, 0)), "s": (1.0, (0, 0, 1, 0)), "N": (1.0, (1, 1, -2, 0)),
            "Pa": (1.0, (-1, 1, -2, 0)), "bar": (1e5, (-1, 1, -2, 0)), "J": (1.0, (2, 1, -2, 0)),
            "L": (1e-3, (3, 0, 0, 0)), "rad": (1.0, (0, 0, 0, 1))}
@@ -14,7 +14,7 @@ WHOLE = {"-": (1.0, (0, 0, 0, 0)), "": (1.0, (0, 0, 0, 0)), "1": (1.0, (0, 0, 0,
 
 
 class UnitError(Exception):
-    """An unknown unit, in words."""
+    """Unknown unit."""
 
 
 def of_symbol(text):
@@ -28,7 +28,7 @@ def of_symbol(text):
 
 
 def of_unit(text):
-    """(factor to SI, powers of m, kg, s, rad) of a unit such as MPa, GPa/m, J/m^2, Pa*s, Pa^-1."""
+    """Returns (factor to SI, powers of m, kg, s, rad) of a unit such as MPa, GPa/m, J/m^2, Pa*s, Pa^-1."""
     factor, powers = 1.0, (0, 0, 0, 0)
     for operator, symbol, power in re.findall(r"(^|[*/ ])([^*/^ ()]*)(?:\^(-?\d+))?", text.replace("²", "^2").strip()):
         if operator == "" and not symbol and text.strip():
@@ -41,7 +41,7 @@ def of_unit(text):
 
 
 def number(text, unit):
-    """The number that a text such as `30 deg` or `2e9` is in `unit`; None if it is none, such as an expression."""
+    """Returns the number of a text such as `30 deg` or `2e9` in `unit`, or None, e.g. for an expression."""
     found = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
     if not found:
         return None

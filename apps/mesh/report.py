@@ -5,7 +5,9 @@ import numpy as np
 
 
 def gamma(points, cells):
-    """Returns the quality (radius of the inscribed over that of the circumscribed sphere, normalised to 1) and the volumes."""
+    """Returns the quality of cells and their volumes (areas in 2D).
+
+    The quality is the radius of the inscribed over that of the circumscribed sphere, 1 for a regular cell."""
     x = points[cells]
     if cells.shape[1] == 3:
         side = [np.linalg.norm(x[:, i] - x[:, j], axis=1) for i, j in ((1, 2), (2, 0), (0, 1))]
@@ -52,7 +54,7 @@ def of_sets(mesh, plan, sizes):
 
 
 def n_intersections(mesh, plan):
-    """As mesh-info counts them: points (3D: edges) of faces of several sets, or of more than two faces."""
+    """Returns the number of intersections, as in mesh-info: points (3D: edges) of several sets or over two faces."""
     at, n = defaultdict(list), plan.dim
     for face, owner in zip(mesh.faces, mesh.face_owner):
         if plan.is_fracture(owner):

@@ -21,7 +21,7 @@ class NetworkError(Exception):
 
 
 class Unusable(NetworkError):
-    """Fracture that a network cannot use, but a larger map may contain: outside of the domain, too short, without geometry."""
+    """Error of a fracture that a large map may contain: outside of the domain, too short, without geometry."""
 
 
 HINT = ("\"unusable fractures\" = \"left out\" in the section network leaves fractures out that are outside of the domain, "

@@ -41,7 +41,7 @@ def moved_onto(surface, others, tolerance):
     than 4 tolerances stay."""
     rings, told = [ring.copy() for ring in surface.rings], []
     close = [o for o in others if o is not surface and np.all(o.low <= surface.high + tolerance) and np.all(o.high >= surface.low - tolerance)]
-    slopes = [surface.plane.axes @ o.plane.normal for o in close]  # gradients of the height above the other planes, along both axes
+    slopes = [surface.plane.axes @ o.plane.normal for o in close]  # gradients of the heights
     for ring in rings:
         for k, corner in enumerate(ring):
             near = [(o.plane.height(corner), slope, o) for o, slope in zip(close, slopes)

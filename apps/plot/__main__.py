@@ -1,14 +1,21 @@
-"""Pictures of what sprekk computed, as PNG files.
+"""Draws results of Sprekk as PNG files.
 
-PATH is the CSV of `sprekk point`, or the output directory of `sprekk run`. The pictures of a CSV are written beside it
-as NAME.png, those of a run into its directory: bulk.png, fractures.png, maps.png and, where the run estimated its error,
-error.png of one step, mohr.png (stress on faces beside the strength of joints), loops.png (mean traction against mean jump
-of each fracture), series.png (slip, opening, pressures and injected volume over time), magnitudes.png (of many fractures
-that slip, in 3D), a picture of each probe, and convergence.png of all steps. A run with flow has flow.png, with pressure and
-velocity, too, and in 2D overview.png, with slip and change of pressure; one with heat temperature.png, with temperature and
-heat flux;
-where the rock does not deform there are no others but these and the last.
-"""
+PATH is the CSV file of `sprekk point`, or the output directory of `sprekk run`. A CSV file gives NAME.png in the same
+folder. A directory gives these pictures, if the run contains the data:
+
+  bulk.png         displacement and stress of the rock
+  fractures.png    slip, opening, traction and contact state of fractures
+  maps.png         slip tendency, slip and opening in space
+  mohr.png         stress on faces, compared with the strength of the joints
+  flow.png         pressure and velocity
+  overview.png     slip and change of pressure of a network, in 2D
+  temperature.png  temperature and heat flux
+  error.png        estimated error of one step
+  loops.png        mean traction against mean jump of each fracture
+  series.png       slip, opening, pressures and injected volume over time
+  magnitudes.png   moment magnitudes of many slipping fractures, in 3D
+  probe_NAME.png   each probe
+  convergence.png  iterations and residuals of all steps"""
 import argparse
 import io
 import sys
@@ -33,7 +40,7 @@ def arguments(words):
 
 
 def of_csv(path):
-    """(name, figure)"""
+    """Yields (name, figure)."""
     import laboratory
     import loops
     curves = laboratory.specimens(path)
@@ -45,7 +52,7 @@ def of_csv(path):
 
 
 def of_run(directory, options):
-    """(name, figure) of each picture that the run has something for."""
+    """Yields (name, figure) of each picture with data in the run."""
     import bulk
     import convergence
     import error
@@ -62,11 +69,11 @@ def of_run(directory, options):
     steps = content["steps"]
     clock = content.get("time_unit", {"name": "s"})
     clock = None if clock["name"] == "s" else (clock["seconds"], clock["name"])
-    states = [step for step in steps if "fractures" in step]  # a step that failed at once has none
+    states = [step for step in steps if "fractures" in step]  # absent if the last step failed at once
     names = sorted(states[-1]["fractures"]) if states else []
     name = directory.resolve().name
 
-    sizes = 0, 0  # (m, Pa) that round-off is measured by
+    sizes = 0, 0  # reference values, m and Pa, for round-off
     bulk_steps, fracture_steps = (read.written_steps(directory, kind) for kind in ("bulk", "fractures"))
     if bulk_steps:
         wanted = bulk_steps[-1][0] if options.time is None else options.time
@@ -134,7 +141,7 @@ def plot(path, options):
 
 
 def pictures(path, options):
-    """{name of a file: its bytes} of all pictures, so that an error leaves none of them behind."""
+    """Returns {file name: bytes} of all pictures. They are written together, so that an error leaves no files."""
     from style import save
     made = {}
     for name, figure in of_run(path, options) if path.is_dir() else of_csv(path):

@@ -1,32 +1,32 @@
-"""Rock: displacement, equivalent stress and largest compression, on the deformed body."""
+"""Pictures of the rock: displacement, von Mises stress and largest compression on the deformed body."""
 import numpy as np
 import read
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgba
 from style import FAINT, INK, PAPER, Quantity, colour_bar, draw_polygons_3d, limits, nice, panels_of_plane, plt, without_noise
 
-LESS_PRESSURE = ", less α (p − p₀)"  # as the array `stress` has it where a fluid moves rock
+LESS_PRESSURE = ", less α (p − p₀)"  # definition of the array `stress` with a fluid in the rock
 
 
 def tensors(stress):
-    """(n, 3, 3) of (n, 6): XX, YY, ZZ, XY, YZ, XZ."""
+    """Returns tensors (n, 3, 3) from components (n, 6): XX, YY, ZZ, XY, YZ, XZ."""
     return stress[:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3)
 
 
 def von_mises(stress):
-    """sqrt(3/2 s:s) with the deviator s."""
+    """Returns the von Mises stress sqrt(3/2 s:s) with the deviator s."""
     sigma = tensors(stress)
     deviator = sigma - np.trace(sigma, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
     return np.sqrt(1.5 * np.sum(deviator**2, axis=(1, 2)))
 
 
 def largest_compression(stress):
-    """Minus the smallest principal stress; compression is positive here."""
+    """Returns the negative of the smallest principal stress, positive in compression."""
     return -np.linalg.eigvalsh(tensors(stress))[:, 0]
 
 
 def warp_factor(points, displacement, factor=None):
-    """A round factor that makes the largest displacement a visible part of the body, unless one is given."""
+    """Returns the given factor, or a round factor that makes the largest displacement visible."""
     if factor is not None:
         return factor
     largest = np.max(np.linalg.norm(displacement, axis=1), initial=0)
@@ -34,14 +34,14 @@ def warp_factor(points, displacement, factor=None):
 
 
 def rim(surface, joints):
-    """Pairs of points: edges of the outer boundary and of the sides of fractures, which are in `joints` (or None).
+    """Returns pairs of points: edges of the outer boundary and of the sides of fractures `joints` (or None).
 
-    The pieces that ranks write have points of their own: edges between two pieces are found twice at one place."""
+    The pieces of ranks have separate points. Edges between two pieces therefore occur twice at the same place."""
     edges = np.concatenate([np.stack([p, np.roll(p, -1)], 1) for p in surface.polygons])
     faces = read.segments(joints) if joints else None
     points = np.concatenate([surface.points, faces.points]) if faces else surface.points
     place = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)
-    number = lambda ends: np.sort(place[ends], axis=1) @ (len(points), 1)  # one for each pair of places
+    number = lambda ends: np.sort(place[ends], axis=1) @ (len(points), 1)  # one number for each pair of places
     here, counts = np.unique(number(edges), return_counts=True)
     sides = number(np.array([ends[:2] for ends in faces.polygons]) + len(surface.points)) if faces else []
     return edges[np.isin(number(edges), np.concatenate([here[counts == 1], sides]))]
@@ -52,7 +52,7 @@ def triangles(polygons):
 
 
 def panels(surface):
-    """(values, colours, label, on the points) of each picture; values in the label's unit."""
+    """Yields (values, colours, label, True for point data) of each panel, in the unit of the label."""
     size, stress = np.linalg.norm(surface.point_data["displacement"], axis=1), surface.cell_data["stress"]
     scale = np.max(abs(stress), initial=0)
     less = LESS_PRESSURE if "pressure" in surface.cell_data else ""
@@ -89,7 +89,7 @@ def of_plane(grid, fractures, title, factor=None):
 
 
 def fracture_faces(grid, fractures, factor):
-    """Corners of the fracture faces, moved by the mean displacement of the rock's points at each corner."""
+    """Returns the corners of the fracture faces, moved by the mean displacement of the rock at each corner."""
     from vtkmodules.vtkCommonCore import vtkIdList
     from vtkmodules.vtkCommonDataModel import vtkPointLocator
     faces = read.surface(fractures)
@@ -126,7 +126,7 @@ def of_body(grid, fractures, title, factor=None, whole=False):
 
 
 def of_step(grid, fractures, title, factor=None, whole=False):
-    """Of the rock's grid; the fractures' may be None."""
+    """Returns the figure of a grid of the rock. The grid of the fractures may be None."""
     if read.is_plane(grid):
         return of_plane(grid, fractures, title, factor)
     return of_body(grid, fractures, title, factor, whole)

@@ -1,4 +1,4 @@
-"""How the solver went: iterations of each step, and what was left when it stopped."""
+"""Picture of convergence: iterations of each step, and the residuals at its end."""
 import numpy as np
 from style import FAINT, LINES, look, plt
 
@@ -14,7 +14,7 @@ def of_run(steps, title):
     left.set(xlabel="step", ylabel="Newton iterations (-)", title="iterations")
     left.yaxis.set_major_locator(plt.MaxNLocator(integer=True))
     left.grid(axis="x", visible=False)
-    if np.any(linear != newton):  # a direct solver needs one for each of Newton's
+    if np.any(linear != newton):  # a direct solver needs one linear iteration for each Newton iteration
         per_solve = left.twinx()
         per_solve.plot(number, linear / np.maximum(newton, 1), "o-", color=LINES[1], markersize=3)
         per_solve.set_ylabel("linear iterations for each of Newton's (-)", color=LINES[1])
@@ -26,7 +26,7 @@ def of_run(steps, title):
     if cut:
         left.legend()
 
-    measures = {name: np.array([step["measures"].get(name) for step in steps], dtype=float)  # none: no number
+    measures = {name: np.array([step["measures"].get(name) for step in steps], dtype=float)  # NaN for a missing measure
                 for name in sorted(steps[-1]["measures"])}
     drawn = {name: np.where(values > 0, values, np.nan) for name, values in measures.items() if np.any(values > 0)}
     for i, (name, values) in enumerate(drawn.items()):

@@ -1,4 +1,4 @@
-"""Where the estimated error sits: of the stress or the flow in the rock, of the jump on the fractures."""
+"""Picture of the estimated error: of stress or flow in the rock, and of the jump on fractures."""
 import numpy as np
 import read
 from bulk import rim
@@ -6,17 +6,17 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm
 from style import FAINT, INK, Quantity, colour_bar, draw_polygons_3d, limits, plt
 
-DECADES = 4  # that colours of the density tell apart
+DECADES = 4  # range of colours of the density
 
 
 def density_of(surface):
-    """Of the stress' error, or of the flow's."""
+    """Returns the density of the stress error, or of the flow error, with its label."""
     data = surface.cell_data
     return (data["error density"], "error density (J/m³)") if "error density" in data else (data["flux error density"], "error density (W/m³)")
 
 
 def density_colours(density):
-    """Colours of a density, on a logarithmic scale where there is any; the norm and the map."""
+    """Returns the values, the norm and the colour map of a density. The scale is logarithmic for nonzero values."""
     largest = np.max(density, initial=0)
     norm = LogNorm(largest * 10.0**-DECADES, largest) if largest > 0 else limits(density)
     return np.maximum(density, norm.vmin), norm, plt.get_cmap("inferno")
@@ -29,7 +29,7 @@ def jump_colours(faces):
 
 
 def headline(title, estimate):
-    """The title with the estimates of the step."""
+    """Returns the title with the estimates of the step."""
     parts = [f"{name} {estimate[name]['relative']:.2g}" for name in ("stress", "jump", "flux")
              if "relative" in estimate.get(name, {})]
     return f"{title}, relative error estimated: {', '.join(parts)}"
@@ -83,7 +83,7 @@ def of_body(grid, joints, whole):
 
 
 def of_step(grid, joints, estimate, title, whole=False):
-    """Of the rock's grid, that of the fractures (or None), and the estimate of the step in the results."""
+    """Returns the figure of the grids of rock and fractures (or None), with the error estimate of the step."""
     fractures, joints = joints, joints if joints and "jump error" in read.arrays(joints.GetCellData()) else None
     figure = of_plane(grid, joints, fractures) if read.is_plane(grid) else of_body(grid, joints, whole)
     figure.suptitle(headline(title, estimate), fontsize=10)

@@ -1,5 +1,4 @@
-"""What drives a flow and how fast it is: pressure of a fluid in rock and fractures, and how it has changed; temperature of
-rock."""
+"""Pictures of flow: pressure in rock and fractures, its change, and the velocity; also temperature and heat flux."""
 import re
 from collections import namedtuple
 
@@ -10,7 +9,7 @@ from matplotlib.colors import LogNorm
 from style import INK, NOISE, Quantity, colour_bar, draw_polygons_3d, limits, panels_of_plane, plt, without_noise
 
 
-# Arrays of rock and fractures with what drives and what flows; how figures call them, and the unit of what drives.
+# Arrays of the potential and the flux in rock and fractures, with labels and the unit of the potential.
 Kind = namedtuple("Kind", "drive unit flux flux_label drive_inside flux_inside flux_inside_label")
 FLUID = Kind("pressure", "Pa", "Darcy velocity", "Darcy velocity (m/s)", "fracture pressure", "fluid flux",
              "flux along fractures (m²/s)")
@@ -18,15 +17,16 @@ HEAT = Kind("temperature", "K", "heat flux", "heat flux (W/m²)", None, None, No
 
 
 def decades(values):
-    """A logarithmic colour bar over at most eight decades below the largest; a plain one where nothing flows."""
+    """Returns a logarithmic norm over at most eight decades below the largest value, or a linear one for zero flow."""
     largest = np.max(values, initial=0)
     least = np.min(values[values > 0], initial=largest)
     return LogNorm(max(least, 1e-8 * largest), max(largest, 1.001 * least)) if largest > 0 else limits(values)
 
 
 def at_start(expression, surface):
-    """The initial pressure at the centres of polygons, by the text of the scene: a number, or a formula of x, y, z and
-    numbers; None of others."""
+    """Returns the initial pressure at the centres of polygons, or None if the expression is not supported.
+
+    Supported are numbers, and formulas of numbers and x, y, z."""
     if not re.fullmatch(r"(?:[xyz\s+\-*/^().\d]|(?<=[\d.])[eE][+-]?(?=\d))+", expression):
         return None
     centres = np.array([surface.points[p].mean(axis=0) for p in surface.polygons]).reshape(-1, 3)
@@ -38,7 +38,7 @@ def at_start(expression, surface):
 
 
 def change(rock, joints, kind, initial):
-    """The panel of p - p0, or nothing."""
+    """Yields the panel of p - p0, if p0 is known."""
     before = [at_start(initial, surface) for surface in (rock, joints) if surface]
     if any(values is None for values in before):
         return
@@ -53,7 +53,7 @@ def change(rock, joints, kind, initial):
 
 
 def panels(rock, joints, kind=FLUID, initial=None):
-    """(name of the panel, of the rock: (values, norm, colours, label), of the fractures the same or None)."""
+    """Yields (name, (values, norm, colours, label) of the rock, the same of the fractures or None) of each panel."""
     data = rock.cell_data
     faces = joints.cell_data if joints and kind.drive_inside else {}
     inside = faces.get(kind.drive_inside, np.zeros(0))
@@ -111,7 +111,7 @@ def of_body(rock, joints, title, whole, kind, initial):
 
 
 def of_step(grid, fractures, title, whole=False, kind=FLUID, initial=None):
-    """Of the rock's grid; the fractures' may be None; `initial` is the text of the initial pressure, if it is known."""
+    """Returns the figure of a grid of the rock. The grid of the fractures and the text `initial` may be None."""
     flat = read.is_plane(grid)
     rock = read.surface(grid if flat or whole else read.behind(grid))
     if flat:

@@ -1,4 +1,4 @@
-"""Fractures: slip, opening, traction and contact state, along them in 2D, on them in 3D."""
+"""Pictures of fractures: slip, opening, traction and contact state, along traces in 2D, on faces in 3D."""
 import numpy as np
 import read
 from style import (FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, colour_bar, draw_polygons_3d, foremost, limits, natural, plt,
@@ -6,11 +6,13 @@ from style import (FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, colour_ba
 
 
 STRAIGHT = np.cos(np.radians(30))
-MOST_NAMES = 15  # of traces beside each other
+MOST_NAMES = 15  # of traces of one fracture
 
 
 def onward(face, at, others, n_there, faces, key, points):
-    """The face that goes on from the end `at` of a face; where several fractures meet, the one that goes straight on or none."""
+    """Returns the next face at the end `at` of a face, or None.
+
+    At an intersection only a straight continuation counts."""
     def leaving(i):
         a, b = faces[i] if key[faces[i][0]] == at else faces[i][::-1]
         return (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
@@ -21,12 +23,13 @@ def onward(face, at, others, n_there, faces, key, points):
 
 
 def chains(segments):
-    """Faces of a fracture one after the other: lists of faces with the arc length at their ends, (n + 1); one for each trace,
-    also where traces cross."""
+    """Returns consecutive faces of a fracture: lists of faces, with the arc length at their ends (n + 1).
+
+    Each trace gives one list, also if traces cross."""
     points, faces = segments.points, [tuple(s[:2]) for s in segments.polygons]
     used = sorted({p for face in faces for p in face})
     tolerance = 1e-9 * np.max(np.ptp(points[used], axis=0))
-    place = {}  # one number for all points of a place
+    place = {}  # one number for all points at the same place
     key = {p: place.setdefault(tuple(np.round((points[p] - points[used[0]]) / tolerance)), len(place)) for p in used}
     around = {}
     for i, face in enumerate(faces):
@@ -50,27 +53,26 @@ def chains(segments):
 
 
 def part(surface, chosen):
-    """Some of the faces."""
+    """Returns the surface of the chosen faces."""
     return read.Surface(surface.points, [surface.polygons[i] for i in chosen],
                         {name: values[chosen] for name, values in surface.cell_data.items()}, {})
 
 
 def scales(rock, data):
-    """Sizes (m, Pa) that round-off is measured by: of displacements and jumps, of stresses and tractions; of the grid of the
-    rock and the arrays of the fractures."""
+    """Returns reference values for round-off: of displacements and jumps, m, and of stresses and tractions, Pa."""
     displacement, stress = (read.arrays(of)[name] for of, name in ((rock.GetPointData(), "displacement"), (rock.GetCellData(), "stress")))
     largest = lambda vectors: np.max(np.linalg.norm(vectors, axis=1), initial=0)
     return max(largest(displacement), largest(data["jump"])), max(np.max(abs(stress), initial=0), largest(data["traction"]))
 
 
 def effective(data):
-    """What to call tractions: those of the contact, less than the total by the pressure of a fluid, where there is one."""
+    """Returns the prefix of tractions: effective, i.e. total traction plus pressure, if there is a fluid."""
     wet = "fracture pressure" in data or np.any(data.get("fluid pressure", 0))
     return "effective " if wet else ""
 
 
 def quantities(data, length, stress):
-    """(values, in m or Pa) by name; without round-off of a length and a stress."""
+    """Returns {name: (values, unit)} in m or Pa, without the round-off of the given length and stress."""
     jump, traction = data["jump local"], data["traction local"]
     return {"tangential jump": (without_noise(np.linalg.norm(jump[:, 1:], axis=1), length), "m"),
             "slip": (without_noise(data["slip"], length), "m"),
@@ -80,25 +82,26 @@ def quantities(data, length, stress):
 
 
 ROWS = {"tangential jump": ("tangential jump", "slip"), "opening": ("opening",),
-        "traction": ("normal traction", "shear traction")}  # of the picture in 2D
+        "traction": ("normal traction", "shear traction")}  # in the 2D picture
 
 
 class Trace:
-    """A trace in 2D: its name, the same within its set, faces, arc length at their ends (m), and how it is drawn."""
+    """Trace in 2D: name, short name within its set, faces, arc length at their ends (m), colour."""
 
     def __init__(self, name, label, faces, arc, colour):
         self.name, self.label, self.faces, self.arc, self.colour = name, label, faces, arc, colour
 
 
 def chains_of(surface, chosen):
-    """(faces, arc length) of each chain among some faces, from the lowest x on."""
+    """Returns (faces, arc length) of each chain among the chosen faces, in the order of x."""
     found = [(chosen[chain], arc) for chain, arc in chains(part(surface, chosen))]
     return sorted(found, key=lambda chain: tuple(np.min(surface.points[surface.polygons[chain[0][0]][:2]], axis=0)))
 
 
 def traces_of(surface, number, name, singles=()):
-    """The traces of a fracture, largest tangential jumps in colour: those of its single fractures, in their order and by
-    the names that results.json has of them; without these by their places and numbers."""
+    """Returns the traces of a fracture, with colours for the largest tangential jumps.
+
+    The traces are single fractures with the names of results.json, or else numbered in the order of x."""
     chosen = np.flatnonzero(surface.cell_data["fracture"] == number)
     if singles and "single fracture" in surface.cell_data:
         of = surface.cell_data["single fracture"][chosen].astype(int)
@@ -116,8 +119,8 @@ def traces_of(surface, number, name, singles=()):
 
 
 def draw_curves(ax, traces, row, drawn, quantity):
-    """The first quantity of a row as lines, the second with dashes; in colours of their own where there is one trace."""
-    ax.use_sticky_edges = False  # zero is a line, not the frame
+    """Draws the first quantity of a row with solid lines, the second with dashes. One trace has a colour for each."""
+    ax.use_sticky_edges = False  # keeps a distance between a line at zero and the frame
     for trace in sorted(traces, key=lambda trace: trace.colour != FAINT):
         for i, name in enumerate(row):
             ax.stairs(quantity(drawn[name][0][trace.faces]), trace.arc, baseline=None, linestyle="--" if i else "-",
@@ -126,7 +129,7 @@ def draw_curves(ax, traces, row, drawn, quantity):
 
 
 def draw_states(ax, traces, state, first):
-    """A strip for each trace, the first at the top; named in the first of several columns."""
+    """Draws a strip for each trace, from top to bottom, with labels in the first column."""
     for k, trace in enumerate(traces):
         ax.pcolormesh(trace.arc, [k + 0.54, k + 1.46], state[trace.faces][None, :], cmap=STATE_COLOURS, vmin=-0.5, vmax=2.5)
     ax.set(xlabel="arc length (m)", ylim=(len(traces) + 0.5, 0.5))
@@ -140,17 +143,17 @@ def draw_states(ax, traces, state, first):
 
 
 def legend_of_traces(ax, traces):
-    """Which colour is which trace, above a column."""
+    """Draws the legend of the colours of traces above a column."""
     handles = [plt.Line2D([], [], color=t.colour, label=t.label) for t in traces if t.colour != FAINT]
     if len(handles) < len(traces):
         handles.append(plt.Line2D([], [], color=FAINT, linewidth=0.6, label="others"))
     ax.add_artist(ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 0.98), ncol=len(handles), columnspacing=0.7,
                             handlelength=1, handletextpad=0.3, borderaxespad=0))
-    ax.legend_ = None  # drawn once, and room for another
+    ax.legend_ = None  # allows a further legend
 
 
 def legend_of_lines(ax, row, n_traces):
-    """Which line is which quantity of a row that has two; of one trace by colour, too."""
+    """Draws the legend of the two quantities of a row; with colours if there is one trace."""
     one = n_traces == 1
     handles = [plt.Line2D([], [], color=LINES[i] if one else INK, linestyle="--" if i else "-", label=name) for i, name in enumerate(row)]
     ax.legend(handles=handles, loc="best" if n_traces <= MOST_NAMES else "upper right", fontsize=7, handlelength=1.6, frameon=True, framealpha=0.7, edgecolor="none")
@@ -160,7 +163,7 @@ MOST_COLUMNS = 4
 
 
 def along(surface, names, title, length, stress, singles=()):
-    """2D: a column for each fracture, values over the arc length; of many fractures, several rows of columns."""
+    """Returns the 2D figure, a column for each fracture, with values over the arc length."""
     named = {number: names[number] if number < len(names) else f"fracture {number}" for number in set(surface.cell_data["fracture"].astype(int))}
     numbers = sorted(named, key=lambda number: natural(named[number]))
     traces = {number: traces_of(surface, number, named[number], singles) for number in numbers}
@@ -168,7 +171,7 @@ def along(surface, names, title, length, stress, singles=()):
     blocks, strips = -(-len(numbers) // columns), min(0.2 + 0.06 * max(map(len, traces.values())), 1.5)
     width, height = max(5.2, 3.6 * columns), blocks * (5.4 + 1.6 * strips)
     figure = plt.figure(figsize=(width, height))
-    figure.set_layout_engine("none")  # the constrained one takes minutes for many axes
+    figure.set_layout_engine("none")  # the constrained layout takes minutes for many axes
     grid = figure.add_gridspec(blocks, columns, left=0.7 / width, right=1, bottom=0.5 / height, top=1 - 0.7 / height, wspace=0.1,
                                hspace=0.8 * blocks / height)
     figure.suptitle(title, fontsize=10, x=0, y=1, ha="left", va="top")
@@ -200,7 +203,7 @@ def along(surface, names, title, length, stress, singles=()):
 
 
 def on_faces(surface, title, length, stress):
-    """3D: the faces coloured."""
+    """Returns the 3D figure with coloured faces."""
     figure, axes = plt.subplots(2, 3, figsize=(9, 6.2), subplot_kw={"projection": "3d"})
     figure.suptitle(title, fontsize=10)
     bar = {"location": "bottom", "shrink": 0.7, "pad": 0.12}
@@ -218,7 +221,7 @@ def on_faces(surface, title, length, stress):
 
 
 def of_step(rock, grid, names, title, singles=()):
-    """Of the grids of the rock and of the fractures, at least one face; `singles` as in results.json."""
+    """Returns the figure of the grids of rock and fractures (at least one face); `singles` as in results.json."""
     plane = grid.GetCell(0).GetCellDimension() == 1
     surface = read.segments(grid) if plane else read.surface(grid)
     sizes = scales(rock, surface.cell_data)

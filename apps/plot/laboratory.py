@@ -1,14 +1,14 @@
-"""Laboratory tests of several specimens: shear against displacement, dilation, stress paths with the strength."""
+"""Picture of laboratory tests of several specimens: shear, dilation, stress paths with strength."""
 import numpy as np
 from read import PlotError, csv_rows
 from style import FAINT, MOST_CURVES, Quantity, give_room, look, plt
 
-REACHED = 1e-3  # of a strength: as near to it a shear traction is at it
-ABOVE = 1.15    # times the largest shear traction: strengths beyond that are not drawn
+REACHED = 1e-3  # relative distance to the strength at which it counts as reached
+ABOVE = 1.15    # of the largest shear traction: upper limit of drawn strengths
 
 
 def specimens(path):
-    """{name: {column: values}} of a CSV of `sprekk point` of several specimens; None of any other."""
+    """Returns {name: {column: values}} of a CSV file of `sprekk point` with several specimens, else None."""
     rows = csv_rows(path)
     if not rows or not {"specimen", "t", "state"} <= set(rows[0]):
         return None
@@ -25,13 +25,15 @@ def specimens(path):
 
 
 def size(curve, kind):
-    """The tangential part: signed in 2D, its length in 3D."""
+    """Returns the tangential component, signed in 2D, or its norm in 3D."""
     parts = [values for column, values in curve.items() if column.startswith(f"{kind}_t")]
     return parts[0] if len(parts) == 1 else np.linalg.norm(parts, axis=0)
 
 
 def bounds(ax, curves, compression, shear):
-    """The largest strength of specimens that reach it; of others, whose compression varies, the strength on the way."""
+    """Draws the largest strength of specimens that reach it, and the strength along the path of others.
+
+    Paths with constant compression have no strength curve."""
     largest, peaks = max(np.max(np.abs(size(c, "traction"))) for c in curves.values()), []
     for k, curve in enumerate(curves.values()):
         stress, strength = -curve["traction_n"], curve["strength"]

@@ -1,14 +1,14 @@
-"""Traction against jump: of a point, and of the means over the fractures of a run."""
+"""Pictures of traction against jump: of a point, and of means over the fractures of a run."""
 import numpy as np
 from read import PlotError, entries
 from style import (FAINT, LINES, MOST_CURVES, Quantity, STATES, STATE_COLOURS, foremost, give_room, look, natural, plt,
                    without_noise)
 
-SHOW_STATES = 400  # of at most so many steps, more would hide the curve
+SHOW_STATES = 400  # largest number of steps with marked states
 
 
 def curve(ax, x, y, colour, label=None, states=None, line="-"):
-    """A path with its first step and its last marked; dots tell the contact state."""
+    """Draws a path with marks of its first and last step. Dots show the contact state."""
     ax.plot(x, y, color=colour, label=label, linestyle=line, zorder=2)
     ax.plot(x[:1], y[:1], "o", color="white", markeredgecolor=colour, markersize=5, zorder=4)
     if states is not None and len(x) <= SHOW_STATES:
@@ -17,7 +17,7 @@ def curve(ax, x, y, colour, label=None, states=None, line="-"):
 
 
 def mark_legend(figure, states, first="first step"):
-    """In the upper right corner: the colours of the contact states, the marks of a path's ends."""
+    """Draws the legend of contact states and of the first and last step in the upper right corner."""
     marks = [plt.Line2D([], [], linestyle="", marker="o", markersize=4, color=STATE_COLOURS(i), label=name)
              for i, name in enumerate(STATES) if states]
     marks += [plt.Line2D([], [], linestyle="", marker="o", markersize=5, color="white", markeredgecolor=LINES[0],
@@ -27,8 +27,9 @@ def mark_legend(figure, states, first="first step"):
 
 
 def of_point(columns, tangential, title):
-    """Shear traction against tangential jump, normal traction against normal jump, and the normal jump that shear
-    brings; in 3D the path of the tangential jump instead."""
+    """Returns the figure of a point: shear traction and tangential jump, normal traction and normal jump, dilation.
+
+    In 3D the path of the tangential jump replaces the dilation."""
     def named(kind, axes):
         return [columns[f"{kind}_{axis}"] for axis in axes]
 
@@ -67,8 +68,9 @@ def of_point(columns, tangential, title):
 
 
 def main_direction(vectors):
-    """The direction in the tangent plane along which the vectors (n, 1 or 2) extend most: t in 2D; in 3D, towards the first
-    of them that has a thousandth of the largest along it."""
+    """Returns the direction in the tangent plane with the largest extent of the vectors (n, 1 or 2).
+
+    In 2D it is t. In 3D its sign is that of the first vector with at least a thousandth of the largest extent."""
     if vectors.shape[1] == 1:
         return np.ones(1)
     direction = np.linalg.svd(vectors)[2][0]
@@ -77,16 +79,17 @@ def main_direction(vectors):
 
 
 def starts_unloaded(scene):
-    """Whether jumps and tractions of all fractures are zero in the initial state; `scene` as read.scene has it."""
+    """Returns whether jumps and tractions vanish in the initial state; `scene` as in read.scene."""
     pressure = scene.get("Flow", {}).get("initial pressure", "0")
     given = (value for name in ("initial stress", "plastic jump") for value in entries(scene, name))
     return "lithostatic stress" not in scene.get("Bulk", {}) and pressure == "0" and not any(given)
 
 
 def of_fractures(steps, names, title, length=0, stress=0, unloaded=False):
-    """Means over each fracture, step by step: shear along the main direction of its tangential jump, normal, and dilation.
-    Round-off is measured by a length and a stress, if not by the means. Curves start at zero if the initial state is
-    unloaded, else with the first step."""
+    """Returns the figure of means over each fracture: shear along the main direction of its jump, normal, and dilation.
+
+    Length and stress are reference values of round-off, at least the largest means. Curves start at zero for an
+    unloaded initial state, otherwise at the first step."""
     if not names:
         raise PlotError(f"{title}: the run has no fractures")
 

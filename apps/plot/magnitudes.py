@@ -1,22 +1,20 @@
-"""How many fractures slipped with at least a magnitude (Gutenberg and Richter 1944)."""
+"""Picture of the number of fractures above each magnitude (Gutenberg and Richter 1944)."""
 import numpy as np
 from style import LINES, STYLES, plt
 
-FEWEST = 20  # fractures with a magnitude; fewer say nothing about a distribution
-FEWEST_OF_SLOPE = 50  # above the magnitude from which on the sample is complete
+FEWEST = 20  # smallest number of fractures with a magnitude
+FEWEST_OF_SLOPE = 50  # smallest number above the magnitude of completeness, for a b-value
 
 
 def b_value(magnitudes, least):
-    """The slope of log10 N(>= M), by maximum likelihood above the least magnitude that is complete (Aki 1965), and its
-    standard error."""
+    """Returns the slope of log10 N(>= M) and its standard error, by maximum likelihood above `least` (Aki 1965)."""
     above = magnitudes[magnitudes >= least]
     b = np.log10(np.e) / (np.mean(above) - least)
     return b, b / np.sqrt(len(above))
 
 
 def complete(magnitudes):
-    """The magnitude from which on the sample is taken as complete: where a histogram of tenths is highest (Wiemer and
-    Wyss 2000)."""
+    """Returns the magnitude of completeness: the maximum of a histogram with bins of 0.1 (Wiemer and Wyss 2000)."""
     counts, sides = np.histogram(
         magnitudes, np.arange(np.floor(10 * magnitudes.min()) / 10, magnitudes.max() + 0.1, 0.1)
     )
@@ -24,7 +22,7 @@ def complete(magnitudes):
 
 
 def of_step(step, title):
-    """Of the single fractures of a step; None where too few have a magnitude."""
+    """Returns the figure of the single fractures of a step, or None for too few magnitudes."""
     found = step.get("single_fractures", {}).get("moment_magnitude", [])
     magnitudes = np.sort([value for value in found if value is not None])
     if len(magnitudes) < FEWEST:

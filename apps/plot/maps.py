@@ -1,4 +1,4 @@
-"""Where on the fractures there is slip tendency, slip and opening, and which directions tend to slip."""
+"""Maps of slip tendency, slip and opening on fractures, with the slip tendency of orientations."""
 import numpy as np
 import orientations
 import read
@@ -9,20 +9,19 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
 from style import FAINT, INK, NOISE, Quantity, STATE_COLOURS, colour_bar, draw_polygons_3d, limits, plt, without_noise
 
-LARGEST_TENDENCY = 1.5  # that colours tell apart
-LIGHT = np.array([0.3, -0.5, 0.81])  # from where faces are lit
+LARGEST_TENDENCY = 1.5  # upper limit of the colours
+LIGHT = np.array([0.3, -0.5, 0.81])  # direction of the light
 
 
 def slip_tendency(data, stress):
-    """Shear traction over normal compression; not a number on open faces, which have none. Tractions that are round-off of
-    the stress are zero."""
+    """Returns shear traction over normal compression, NaN on open faces. Round-off of the stress counts as zero."""
     normal, shear = data["traction local"][:, 0], without_noise(np.linalg.norm(data["traction local"][:, 1:], axis=1), stress)
     loaded = (data["state"] > 0) & (normal < -NOISE * stress)
     return without_noise(np.where(loaded, shear / np.where(loaded, -normal, 1), np.nan), 1)
 
 
 def panels(data, length, stress):
-    """(values, norm, colours, label) of each map; length and stress measure round-off."""
+    """Yields (values, norm, colours, label) of each map. Length and stress are reference values of round-off."""
     tendency = np.minimum(slip_tendency(data, stress), LARGEST_TENDENCY)
     ratio = "shear traction / " + effective(data) + "normal compression (-)"
     colours = plt.get_cmap("plasma").with_extremes(bad=STATE_COLOURS(0))
@@ -34,7 +33,7 @@ def panels(data, length, stress):
 
 
 def planes(surface, values):
-    """Of each plane of a fracture a polygon, and the mean of the values over its area, of those that are numbers."""
+    """Returns a polygon for each plane of a fracture, and the mean value over its area without NaN."""
     corners = surface.corners()
     normals = np.array([orientations.area_vector(x) for x in corners])
     areas = np.linalg.norm(normals, axis=1)
@@ -48,8 +47,9 @@ def planes(surface, values):
 
 
 def draw_directions(ax, shapes, values, norm, colours):
-    """Rose diagram of lines, stereonet of polygons, coloured by their values, in ten classes; what is between two but for
-    round-off is in the upper."""
+    """Draws a rose diagram of lines or a stereonet of polygons, with colours in ten classes of the values.
+
+    A value at the limit of two classes, up to round-off, is in the upper class."""
     classes = np.where(np.isnan(values), -1, np.clip(np.floor(10 * np.ma.filled(norm(values), 0) + 1e-6), 0, 9))
     parts = [(colours(np.nan if k < 0 else (k + 0.5) / 10), [shapes[i] for i in np.flatnonzero(classes == k)])
              for k in range(-1, 10)]
@@ -57,14 +57,14 @@ def draw_directions(ax, shapes, values, norm, colours):
 
 
 def shaded(colours, corners):
-    """The colours of faces in space, darker the more they turn away from the light."""
+    """Returns the colours of faces in space, darker for faces turned away from the light."""
     normals = np.array([orientations.area_vector(x) for x in corners])
     bright = 0.7 + 0.3 * abs(normals @ LIGHT) / np.linalg.norm(normals, axis=1)
     return np.column_stack([colours[:, :3] * bright[:, None], colours[:, 3]])
 
 
 def draw_faces(ax, surface, colours):
-    """The faces, and the rims of fractures among them, as polygons of two corners that others may hide."""
+    """Draws the faces, and the rims of fractures as polygons of two corners, which faces may hide."""
     corners, edges = surface.corners(), surface.points[rim(surface, None)]
     faces = shaded(colours, corners)
     ink = np.tile(to_rgba(INK), (len(edges), 1))
@@ -119,7 +119,7 @@ def write_names(ax, surface, names, singles):
 
 
 def of_step(rock, joints, names, title, singles=()):
-    """Of the grids of the rock and of the fractures, which have these names; `singles` as in results.json."""
+    """Returns the figure of the grids of rock and fractures with these names; `singles` as in results.json."""
     plane = read.is_plane(rock)
     surface = read.segments(joints) if plane else read.surface(joints)
     skin = read.surface(rock)

@@ -1,5 +1,6 @@
-"""Stress on fracture faces in Mohr's diagram: shear against normal compression, beside the strength of the joints, the
-paths of the fractures that slip most, and the circles of the mean stress in the rock."""
+"""Mohr diagram of the stress on fracture faces, with strengths of joints.
+
+It also shows the paths of the fractures with the largest slip, and the circles of the mean stress in the rock."""
 import math
 
 import numpy as np
@@ -13,7 +14,7 @@ MOST_PATHS = 3  # of single fractures
 
 
 def number(joint, name, default=None):
-    """An entry that is a number; None of one that is an expression."""
+    """Returns a numerical entry, or NaN for an expression."""
     try:
         return float(joint.get(name, "nan" if default is None else default))
     except ValueError:
@@ -21,9 +22,10 @@ def number(joint, name, default=None):
 
 
 def strength(joint, normal):
-    """The largest shear traction of intact asperities under normal compressions, or None for laws that are not known
-    here: c + mu N of Coulomb's, N tan(phi_r + JRC log10(JCS / N)) of Barton and Choubey's, whose angle is at most 70
-    degrees."""
+    """Returns the largest shear traction of intact asperities under normal compressions, or None for other laws.
+
+    The laws are c + mu N (Coulomb) and N tan(phi_r + JRC log10(JCS / N)) (Barton and Choubey), with an angle of at
+    most 70 degrees."""
     if joint.get("friction") == "Coulomb":
         angle = number(joint, "friction angle")
         friction = number(joint, "friction coefficient") if math.isnan(angle) else math.tan(math.radians(angle))
@@ -42,8 +44,7 @@ def strength(joint, normal):
 
 
 def mean_stress(rock):
-    """The principal stresses of the mean over the volume, smallest compression first, compression positive; in 2D of
-    the plane."""
+    """Returns the principal stresses of the volume mean, positive and ascending in compression; in 2D of the plane."""
     from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 
     sizes = vtkCellSizeFilter()
@@ -57,7 +58,7 @@ def mean_stress(rock):
 
 
 def draw_circles(ax, principal, traction):
-    """Half a circle between each two principal stresses."""
+    """Draws half a circle for each pair of principal stresses."""
     for i in range(len(principal)):
         for j in range(i):
             centre, radius = 0.5 * (principal[i] + principal[j]), 0.5 * (principal[i] - principal[j])
@@ -72,7 +73,7 @@ def draw_circles(ax, principal, traction):
 
 
 def draw_envelopes(ax, joints, traction, largest):
-    """Of joints, {name: entries}, up to the largest compression; those of laws that are not known are named."""
+    """Draws the strengths of joints {name: entries} up to the largest compression. Names joints with other laws."""
     normal, unknown, drawn = np.linspace(0, largest, 200), [], 0
     for name, joint in joints.items():
         bound = strength(joint, normal)
@@ -88,8 +89,9 @@ def draw_envelopes(ax, joints, traction, largest):
 
 
 def stress_paths(content, time):
-    """{name: compressions and shear tractions over the steps up to a time}, means over the single fractures that slip
-    most; none of a run of one step."""
+    """Returns {name: (compressions, shear tractions)} over the steps up to a time.
+
+    These are means over the single fractures with the largest slip. The result is empty for one step."""
     steps = [step for step in content["steps"] if step.get("single_fractures") and step["time"] <= time]
     if len(steps) < 2 or "max_slip" not in steps[-1]["single_fractures"]:
         return {}
@@ -103,7 +105,7 @@ def stress_paths(content, time):
 
 
 def joints_of(scene, content, names):
-    """{name: entries} of the joints that fractures name, and of those of their own that some single fractures have."""
+    """Returns {name: entries} of the joints of fractures, and of the given single fractures with own entries."""
     materials = scene.get("Materials", {})
     used = [f.get("material") for f in scene.get("Fractures", {}).values() if isinstance(f, dict)]
     joints = {name: materials.get(name, {}) for name in used}
@@ -114,9 +116,9 @@ def joints_of(scene, content, names):
 
 
 def of_step(rock, joints, scene, title, content, time):
-    """Of the grids of the rock and of the fractures, the scene as read.scene has it, and results.json, of which the paths
-    up to here. Circles only where no fluid makes a difference between the stress of the rock and that of the
-    fractures."""
+    """Returns the figure of the grids of rock and fractures, with scene as in read.scene and `content` of results.json.
+
+    The paths end at `time`. Circles are drawn only without a fluid, when effective and total stress are equal."""
     data = read.arrays(joints.GetCellData())
     size = scales(rock, data)[1]
     local = data["traction local"]

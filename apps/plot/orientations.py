@@ -1,23 +1,24 @@
-"""Directions of fractures: a rose diagram of strikes in 2D, poles in a stereonet in 3D."""
+"""Orientations of fractures: rose diagram of strikes in 2D, stereonet of poles in 3D."""
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 
 def strikes(lines):
-    """Directions (degree, clockwise from north, in [0, 180)) and lengths of all segments of polylines."""
+    """Returns strikes (degrees, clockwise from north, in [0, 180)) and lengths of all segments of polylines."""
     along = np.concatenate([np.diff(line, axis=0) for line in lines])
     return np.degrees(np.arctan2(along[:, 0], along[:, 1])) % 180, np.linalg.norm(along, axis=1)
 
 
 def area_vector(polygon):
-    """Area times unit normal of a plane polygon (n, 3)."""
+    """Returns area times unit normal of a plane polygon (n, 3)."""
     x = polygon - np.mean(polygon, axis=0)
     return 0.5 * np.cross(x, np.roll(x, -1, axis=0)).sum(axis=0)
 
 
 def poles(polygons):
-    """Trend (degree, clockwise from north) of the poles that point down, and their distance from the centre of a stereonet of
-    radius 1, of the lower hemisphere and equal areas."""
+    """Returns trend (degrees, clockwise from north) and radius of downward poles.
+
+    The stereonet has the radius 1 and is an equal-area projection of the lower hemisphere."""
     normal = np.array([area_vector(x) for x in polygons])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     down = np.where(normal[:, 2:] > 0, -normal, normal)
@@ -25,8 +26,8 @@ def poles(polygons):
 
 
 def draw_rose(ax, sets):
-    """Bars of 10 degrees as long as their share of the length of all fractures, stacked: (colour, lines) of each part."""
-    sides = np.arange(-5, 356, 10)  # so that directions along axes are in the middle of a bar
+    """Draws the share of each strike in the total length, in bars of 10 degrees; `sets` are (colour, lines)."""
+    sides = np.arange(-5, 356, 10)  # centres the bars at the directions of axes
     total = sum(strikes(lines)[1].sum() for _, lines in sets)
     base = np.zeros(36)
     for colour, lines in sets:
@@ -37,13 +38,13 @@ def draw_rose(ax, sets):
         base += share
     ax.yaxis.set_major_locator(MaxNLocator(3, prune="lower"))
     ax.yaxis.set_major_formatter("{x:g} %")
-    # the numbers go where there are the shortest bars
+    # labels at the shortest bars
     ax.set_rlabel_position(min(np.arange(22.5, 360, 45), key=lambda a: base[np.abs((sides[:-1] + 5 - a + 180) % 360 - 180) < 15].sum()))
     ax.set_title("share of the length by direction", fontsize=9)
 
 
 def draw_stereonet(ax, sets):
-    """Poles of planes: (colour, polygons) of each part."""
+    """Draws the poles of planes; `sets` are (colour, polygons)."""
     for colour, polygons in sets:
         trend, radius = poles(polygons)
         ax.plot(np.radians(trend), radius, "o", color=colour, markersize=4, markeredgecolor="0.2", markeredgewidth=0.3, clip_on=False, zorder=5)
@@ -53,7 +54,7 @@ def draw_stereonet(ax, sets):
 
 
 def draw(ax, dim, sets):
-    """On polar axes."""
+    """Draws the diagram on polar axes."""
     ax.set_theta_zero_location("N")
     ax.set_theta_direction(-1)
     (draw_rose if dim == 2 else draw_stereonet)(ax, sets)

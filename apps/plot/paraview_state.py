@@ -1,4 +1,4 @@
-"""Writes a Python state for ParaView that opens a run: the rock warped and half cut, its fractures by what they do."""
+"""Writes a Python state of ParaView for a run: deformed rock, cut in half in 3D, and the states of fractures."""
 from pathlib import Path
 
 from read import PlotError, grid, is_plane, results, written_steps
@@ -64,7 +64,7 @@ view.ResetCamera()
 
 
 def state_of(directory):
-    """The text of a state for the run in a directory."""
+    """Returns the text of the state for the run in a directory."""
     from bulk import warp_factor
     from read import arrays
     from vtkmodules.util.numpy_support import vtk_to_numpy

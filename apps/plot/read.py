@@ -1,4 +1,4 @@
-"""Reads what sprekk writes: the CSV of a point, the numbers and the grids of a run."""
+"""Reads files of Sprekk: CSV files of a point, numbers and grids of a run."""
 import csv
 import json
 import xml.etree.ElementTree as xml
@@ -15,11 +15,11 @@ from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataReader, vtkXMLPUnstructured
 
 
 class PlotError(Exception):
-    """What is wrong with the input, in one line that names the file."""
+    """Invalid input, described in one line with the name of the file."""
 
 
 def csv_rows(path):
-    """The rows of a CSV with a line of titles; refuses two columns of one title and rows of another length."""
+    """Returns the rows of a CSV file with titles. Error for equal titles and for rows of different length."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             rows = [(k, row) for k, row in enumerate(csv.reader(file), 1) if row]
@@ -36,7 +36,7 @@ def csv_rows(path):
 
 
 def point_csv(path):
-    """Columns of a CSV of `sprekk point` by name, and the tangential axes: ["t"] or ["t1", "t2"]."""
+    """Returns {column: values} of a CSV file of `sprekk point`, and the tangential axes ["t"] or ["t1", "t2"]."""
     rows = csv_rows(path)
     if len(rows) < 2 or not {"t", "state", "jump_n"} <= set(rows[0]):
         raise PlotError(f'{path}: is no CSV of "sprekk point"; such a file starts with "t,state,jump_n"')
@@ -48,13 +48,13 @@ def point_csv(path):
 
 
 def results(directory):
-    """results.json of a run, with at least one step."""
+    """Returns the content of results.json. Error for a run without steps."""
     path = Path(directory) / "results.json"
     if not path.is_file():
         raise PlotError(f'{directory}: holds no results.json; "sprekk run" writes one into its output directory')
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:  # of json, or of text that is no UTF-8
+    except ValueError as error:  # invalid JSON or UTF-8
         raise PlotError(f"{path}: is no JSON ({error})") from None
     check_results(path, content)
     if not content.get("steps"):
@@ -66,13 +66,13 @@ NUMBER = int, float
 KINDS = {dict: "an object", list: "a list", NUMBER: "a number", bool: "true or false", str: "a text"}
 WHOLE = {"status": str, "steps": list, "mesh": dict, "time_unit": dict, "single_fractures": list, "timing": dict}
 STEP = {"time": NUMBER, "converged": bool, "cuts": NUMBER, "newton_iterations": NUMBER, "linear_iterations": NUMBER,
-        "measures": dict}  # in each step
-OF_STEP = {"fractures": dict, "wells": dict, "reactions": dict, "single_fractures": dict, "inflows": dict}  # in some
-MEMBERS = {"fractures": dict, "wells": dict, "reactions": list}  # each of them
+        "measures": dict}  # required in each step
+OF_STEP = {"fractures": dict, "wells": dict, "reactions": dict, "single_fractures": dict, "inflows": dict}  # optional
+MEMBERS = {"fractures": dict, "wells": dict, "reactions": list}  # types of their members
 
 
 def check_results(path, content):
-    """Refuses results that "sprekk run" does not write."""
+    """Checks the types of results.json. Error for files that `sprekk run` does not write."""
     def check(place, value, kind):
         if not isinstance(value, kind):
             text = json.dumps(value)[:40]
@@ -96,7 +96,7 @@ def check_results(path, content):
 
 
 def scene(directory):
-    """The sections and entries (texts) of a run's effective_input.xml, as dictionaries; none if there is no such file."""
+    """Returns sections and entries (texts) of effective_input.xml as nested dicts; empty without this file."""
     def section(node):
         return {child.get("name"): section(child) if child.tag == "ParameterList" else child.get("value") for child in node}
     path = Path(directory) / "effective_input.xml"
@@ -107,7 +107,7 @@ def scene(directory):
 
 
 def entries(section, name):
-    """The values of all entries of a name that are not empty, in a section and those in it."""
+    """Yields the nonempty values of all entries of a name in a section and its subsections."""
     for key, value in section.items():
         if isinstance(value, dict):
             yield from entries(value, name)
@@ -116,7 +116,7 @@ def entries(section, name):
 
 
 def written_steps(directory, kind):
-    """(time, file) of each step that DIRECTORY/KIND.pvd lists; none if there is no such file."""
+    """Returns (time, file) of each step listed in DIRECTORY/KIND.pvd; empty without this file."""
     path = Path(directory) / f"{kind}.pvd"
     try:
         return [(float(entry.get("timestep")), file) for entry, file in listed(path)]
@@ -125,7 +125,7 @@ def written_steps(directory, kind):
 
 
 def listed(path, tag="DataSet", attribute="file"):
-    """(entry, file) of each file that a .pvd, .vtm or .pvtu lists; none if there is no such list."""
+    """Returns (entry, file) of each file listed in a .pvd, .vtm or .pvtu file; empty without this file."""
     if not path.is_file():
         return []
     try:
@@ -139,7 +139,7 @@ def listed(path, tag="DataSet", attribute="file"):
 
 @contextmanager
 def messages():
-    """Collects the messages of VTK. By itself it prints them, and goes on without a part that it cannot read."""
+    """Collects messages of VTK. By default VTK prints them and omits unreadable parts."""
     window, shown, level = vtkStringOutputWindow(), vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
     vtkOutputWindow.SetInstance(window)
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
@@ -151,7 +151,7 @@ def messages():
 
 
 def output(reader, file):
-    """The content of a file by a reader of VTK; refuses a file that is missing, empty or damaged."""
+    """Returns the output of a VTK reader. Error for a missing, empty or damaged file."""
     if not Path(file).is_file():
         raise PlotError(f"{file}: no such file")
     with messages() as said:
@@ -164,7 +164,7 @@ def output(reader, file):
 
 
 def whole(reader, file, pieces):
-    """The content of a file that lists others; an error names the one at fault."""
+    """Returns the content of a file that lists others. An error names the damaged file."""
     for piece in pieces:
         if not piece.is_file():
             raise PlotError(f"{piece}: no such file")
@@ -185,7 +185,7 @@ def joined(grids):
 
 
 def blocks(file):
-    """The grids in a .vtm by their names, each with the pieces of all ranks: fractures, and where they meet."""
+    """Returns {name: grid} of a .vtm file, joined from the pieces of all ranks: fractures and intersections."""
     tree, found = whole(vtkXMLMultiBlockDataReader(), file, [piece for _, piece in listed(Path(file))]), {}
     for k in range(tree.GetNumberOfBlocks()):
         found[tree.GetMetaData(k).Get(tree.NAME())] = joined(parts(tree.GetBlock(k)))
@@ -193,7 +193,7 @@ def blocks(file):
 
 
 def parts(block):
-    """The grids in a block: a nested one, or one of several pieces, as earlier versions wrote them."""
+    """Returns the grids in a block: a single grid, the members of a nested block, or the pieces of earlier versions."""
     if hasattr(block, "GetBlock"):
         return [block.GetBlock(k) for k in range(block.GetNumberOfBlocks())]
     if hasattr(block, "GetPartition"):
@@ -202,7 +202,7 @@ def parts(block):
 
 
 def grid(file):
-    """The pieces of a .pvtu, or those of all fractures in a .vtm, as one grid of VTK."""
+    """Returns the pieces of a .pvtu file, or all fractures of a .vtm file, as one VTK grid."""
     if Path(file).suffix == ".vtm":
         return joined(block for block in blocks(file).values() if block.GetCellData().HasArray("fracture"))
     return whole(vtkXMLPUnstructuredGridReader(), file, [piece for _, piece in listed(Path(file), "Piece", "Source")])
@@ -210,14 +210,14 @@ def grid(file):
 
 @dataclass
 class Surface:
-    """Polygons: points (n, 3), for each polygon its points, values by name."""
+    """Polygons: points (n, 3), point indices of each polygon, {name: values} of polygons and of points."""
     points: np.ndarray
     polygons: list
     cell_data: dict
     point_data: dict
 
     def corners(self, points=None):
-        """Coordinates of each polygon's points."""
+        """Returns the coordinates of the points of each polygon."""
         points = self.points if points is None else points
         return [points[polygon] for polygon in self.polygons]
 
@@ -227,18 +227,18 @@ def arrays(data):
 
 
 def cells(connectivity):
-    """The points of each cell of a vtkCellArray."""
+    """Returns the point indices of each cell of a vtkCellArray."""
     offsets = vtk_to_numpy(connectivity.GetOffsetsArray())
     return np.split(vtk_to_numpy(connectivity.GetConnectivityArray()), offsets[1:-1]) if len(offsets) > 1 else []
 
 
 def segments(data):
-    """The fractures of a plane problem, each face with its two end points first."""
+    """Returns the fracture faces of a plane problem. The first two points of a face are its ends."""
     return Surface(vtk_to_numpy(data.GetPoints().GetData()), cells(data.GetCells()), arrays(data.GetCellData()), {})
 
 
 def surface(data):
-    """The cells of a plane grid, or the faces around a body, as polygons."""
+    """Returns the cells of a plane grid, or the boundary faces of a body, as polygons."""
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
     skin = vtkDataSetSurfaceFilter()
     skin.SetInputData(data)
@@ -250,11 +250,11 @@ def surface(data):
 
 
 def behind(data):
-    """The half of a body behind its middle, as seen from the front (-y)."""
+    """Returns the rear half of a body (y above the centre)."""
     from vtkmodules.vtkCommonDataModel import vtkPlane
     from vtkmodules.vtkFiltersGeneral import vtkTableBasedClipDataSet
     plane, centre = vtkPlane(), data.GetCenter()
-    plane.SetOrigin(centre[0], centre[1] + 1e-6 * data.GetLength(), centre[2])  # off the faces of the mesh
+    plane.SetOrigin(centre[0], centre[1] + 1e-6 * data.GetLength(), centre[2])  # away from faces of the mesh
     plane.SetNormal(0, 1, 0)
     clip = vtkTableBasedClipDataSet()
     clip.SetInputData(data)

@@ -1,26 +1,26 @@
-"""Over time: slip and opening of fractures, pressures and rates of wells, injected volume; and what probes wrote."""
+"""Pictures of time series: slip and opening of fractures, pressures and rates of wells, injected volume, probes."""
 import re
 
 import numpy as np
 from read import PlotError, csv_rows
 from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit
 
-MOST_LINES = 6  # in one panel
+MOST_LINES = 6  # with colours in one panel
 
 
 def clock(times, wanted):
-    """The times in the unit that is wanted, (factor, name), or in a readable one; and the name."""
+    """Returns the times in a unit, and its name. The unit is `wanted`, (factor, name), or a readable one."""
     factor, name = wanted or unit(np.max(np.abs(times), initial=0), "s")
     return np.asarray(times) / factor, name
 
 
 def injected(times, rates, start=0.0):
-    """The volume since the start, with the rate of each step all through it, as the steps are computed."""
+    """Returns the injected volume since the start. The rate is constant in each step, as in the computation."""
     return np.cumsum(np.diff(np.concatenate([[start], times])) * rates)
 
 
 def panels(steps, start=0.0, dim=3):
-    """(label, unit, {name: values over the steps}) of what a run's steps hold."""
+    """Yields (label, unit, {name: values over the steps}) of the data in a run."""
     times = np.array([step["time"] for step in steps])
     fractures = steps[-1].get("fractures", {})
     for key, label, base in (
@@ -46,14 +46,14 @@ def panels(steps, start=0.0, dim=3):
 
     if wells:
         yield "pressure in wells", "Pa", of_wells("pressure")
-        base = "m²" if dim == 2 else "m³"  # per depth in 2D
+        base = "m²" if dim == 2 else "m³"  # volume per depth in 2D
         yield "injected volume", base, {n: injected(times, v, start) for n, v in of_wells("rate").items()}
         if any("temperature" in well for well in steps[-1]["wells"].values()):
             yield "temperature in wells", "K", of_wells("temperature")
 
 
 def draw(ax, times, label, base, curves):
-    """Those with the largest changes in colour, the others thin."""
+    """Draws the curves with the largest changes in colour, the others thin."""
     quantity = Quantity(label, base, *curves.values()) if base else None
     names = list(curves)
     shown = foremost([np.nanmax(values) - np.nanmin(values) for values in curves.values()], MOST_LINES)
@@ -71,7 +71,7 @@ def draw(ax, times, label, base, curves):
 
 
 def figure_of(title, times, name, content):
-    """A panel for each entry of the content, with one axis of time."""
+    """Returns the figure with a panel for each entry of the content and a common time axis."""
     figure, axes = plt.subplots(len(content), 1, sharex=True, squeeze=False, figsize=(7.4, 0.6 + 2.1 * len(content)))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     for ax, (label, base, curves) in zip(axes.flat, content):
@@ -82,7 +82,7 @@ def figure_of(title, times, name, content):
 
 
 def of_run(steps, title, wanted=None, start=0.0, dim=3):
-    """Of at least two steps; None if there is nothing to draw."""
+    """Returns the figure of at least two steps, or None without data."""
     content = list(panels(steps, start, dim)) if len(steps) > 1 else []
     content = [
         (label, base, curves)
@@ -99,7 +99,7 @@ TITLE = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*$")
 
 
 def probe(path):
-    """The columns of a probe's CSV: [(name, unit, values)], the first of them the time."""
+    """Returns the columns of a probe's CSV file, [(name, unit, values)]. The first column is the time."""
     rows = csv_rows(path)
     titles = [TITLE.match(title) for title in rows[0]] if rows else []
     if not titles or None in titles or titles[0]["name"] != "time":
@@ -114,12 +114,12 @@ def probe(path):
 
 
 def panel(name, symbol, curves):
-    """As figure_of() takes it; units that have no prefixes stand in the name."""
+    """Returns a panel for figure_of(). Units without prefixes are part of the name."""
     return (name, symbol, curves) if symbol in PREFIXES else (f"{name} ({symbol})", "", curves)
 
 
 def of_probe(path):
-    """A panel for each unit; along a line the profiles of the last time. None of an empty one."""
+    """Returns a panel for each unit, with profiles of the last time for lines. None for an empty file."""
     columns = probe(path)
     clock_name, times = columns[0][1:]
     if not len(times):

@@ -1,9 +1,9 @@
-"""One look for all pictures: fonts, units, colours, colour bars."""
+"""Common style of pictures: fonts, units, colours, colour bars."""
 import re
 
 import matplotlib
 
-matplotlib.use("Agg")  # no screen
+matplotlib.use("Agg")  # no display
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -11,11 +11,11 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 from matplotlib.transforms import Bbox
 
 INK, FAINT, PAPER = "#262933", "#8a8f99", "#f4f1ea"
-LINES = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # told apart by the colour-blind, too (Tol)
+LINES = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # suits colour blindness (Tol)
 STYLES = ["-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5))]
 MARKERS = ["o", "s", "^", "D"]
-MOST_CURVES = len(LINES) * len(STYLES)  # that are told apart
-NOISE = 1e-9  # of the size of what numbers are computed from: these are zero, or the same
+MOST_CURVES = len(LINES) * len(STYLES)  # with different styles
+NOISE = 1e-9  # relative round-off: smaller values are zero, smaller differences are equal
 STATES = ["open", "stick", "slip"]
 STATE_COLOURS = ListedColormap(["#66ccee", "#bbbbbb", "#cc3311"])
 
@@ -34,11 +34,11 @@ PREFIXES = {"m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
             "m³": [(1, "m³"), (1e-3, "l")],
             "m²": [(1, "m²")],
             "s": [(86400, "d"), (3600, "h"), (60, "min"), (1, "s")]}
-LEAST_TIMES = 2  # a time is at least so many of its unit
+LEAST_TIMES = 2  # smallest value in a unit of time
 
 
 def unit(largest, base):
-    """(factor, name) of the unit in which `largest`, in one of the units above, is a number that is easily read."""
+    """Returns (factor, name) of a readable unit for numbers up to `largest`, given in the SI unit `base`."""
     least = LEAST_TIMES if base == "s" else 0.5
     for factor, name in PREFIXES[base]:
         if largest >= least * factor:
@@ -47,7 +47,7 @@ def unit(largest, base):
 
 
 class Quantity:
-    """Arrays of one kind in one readable unit."""
+    """Converter of arrays to one readable unit."""
 
     def __init__(self, name, base, *values):
         largest = max((float(np.max(np.abs(v))) for v in values if np.size(v)), default=0)
@@ -59,14 +59,15 @@ class Quantity:
 
 
 def when(time, wanted=None):
-    """A time in words, in the unit (factor, name) that is wanted or in a readable one."""
+    """Returns a time as text, in the unit `wanted`, (factor, name), or a readable one."""
     factor, name = wanted or unit(abs(time), "s")
     return f"t = {time / factor:.5g} {name}"
 
 
 def panels_of_plane(n, points, width=10.5):
-    """A figure with n panels that show something of the form of the points, beside or above each other, whatever is larger;
-    the axes, and where colour bars go."""
+    """Returns a figure with n panels, their axes, and arguments for colour bars.
+
+    The panels have the aspect ratio of the points. They are in a row or a column, whichever gives larger panels."""
     extent = np.ptp(points[:, :2], axis=0)
     form = max(extent[1], 1e-9) / max(extent[0], 1e-9)
     beside = min(width / n - 1.2, 8.4 / form) > min(width - 3, (9 / n - 1) / form)
@@ -86,23 +87,25 @@ def panels_of_plane(n, points, width=10.5):
 
 
 def look(k):
-    """Colour, line and marker of the k-th of several curves."""
+    """Returns colour, line and marker of the k-th curve."""
     row = k // len(LINES) % len(STYLES)
     return {"color": LINES[k % len(LINES)], "linestyle": STYLES[row], "marker": MARKERS[row]}
 
 
 def natural(name):
-    """To sort names by: 2 comes before 10."""
+    """Returns a key for sorting names with numbers: 2 comes before 10."""
     return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", name) if part]
 
 
 def foremost(sizes, most):
-    """Which of several are shown in colour: the `most` largest, in their order."""
+    """Returns the indices of the `most` largest sizes, in ascending order, for curves in colour."""
     return sorted(np.argsort(-np.asarray(sizes), kind="stable")[:most].tolist())
 
 
 def without_noise(values, scale):
-    """The values; zeros where they are round-off of something as large as scale, their mean where they differ by no more."""
+    """Returns values without round-off relative to `scale`.
+
+    Small values become zero; nearly equal values their mean."""
     values = np.asarray(values, dtype=float)
     scale = max(scale, np.nanmax(np.abs(values), initial=0))
     values = np.where(np.abs(values) <= NOISE * scale, 0 * values, values)
@@ -111,8 +114,9 @@ def without_noise(values, scale):
 
 
 class Range(Normalize):
-    """Ends of a colour bar; `single` is the value of a field that has no other, else None; `extend` says, as matplotlib
-    does, on which sides there are values beyond the ends."""
+    """Range of a colour bar.
+
+    `single` is the value of a constant field, else None. `extend` is the argument of matplotlib for values outside."""
 
     def __init__(self, low, high, single=None, extend="neither"):
         super().__init__(low, high)
@@ -120,8 +124,10 @@ class Range(Normalize):
 
 
 def clipped(values):
-    """The ends between which 98 % of the values lie, where the others would take half of the colours, and how a colour bar
-    shows that. Tips of fractures and wells have values without bound."""
+    """Returns the ends of a colour bar, and its argument `extend`.
+
+    The ends are the percentiles 1 and 99 if the outliers would use half of the colours. Tips and wells have such
+    values."""
     low, high = float(np.min(values)), float(np.max(values))
     inner = np.percentile(values, [1, 99])
     if np.ptp(inner) > 0.5 * (high - low) or np.ptp(inner) <= NOISE * max(abs(low), abs(high)):
@@ -133,7 +139,7 @@ def clipped(values):
 
 
 def limits(values, signed=False, clip=False):
-    """Around zero if signed; a constant gets some room. With clip without the outliers of `clipped`."""
+    """Returns the Range of values: symmetric if signed, wider for a constant, without outliers if clip."""
     low, high, extend = (float(np.min(values)), float(np.max(values)), "neither") if np.size(values) else (0, 0, "neither")
     if clip and np.size(values):
         low, high, extend = clipped(values)
@@ -148,7 +154,7 @@ def limits(values, signed=False, clip=False):
 
 
 def give_room(ax):
-    """Widens an axis on which a value does not change but for round-off."""
+    """Widens axes with constant values, up to round-off."""
     for line in ax.lines:
         for values, get, put in ((line.get_xdata(), ax.get_xlim, ax.set_xlim), (line.get_ydata(), ax.get_ylim, ax.set_ylim)):
             size = np.max(np.abs(values), initial=0)
@@ -157,7 +163,7 @@ def give_room(ax):
 
 
 def colour_bar(figure, ax, norm, colours, label, **where):
-    """A bar beside the axes or where `location` says; of a field that is the same everywhere it shows just that value."""
+    """Draws a colour bar. For a constant field it shows only this value. `location` may give the position."""
     bar = figure.colorbar(ScalarMappable(norm, colours), ax=ax, extend=getattr(norm, "extend", "neither"),
                           **{"shrink": 0.85, "aspect": 25, "pad": 0.02, **where})
     bar.set_label(label)
@@ -171,7 +177,7 @@ def colour_bar(figure, ax, norm, colours, label, **where):
 
 
 def state_bar(figure, ax, **where):
-    """The three contact states as a bar; returns how they are coloured."""
+    """Draws the three contact states as a colour bar; returns its norm."""
     norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
     bar = colour_bar(figure, ax, norm, STATE_COLOURS, "contact state (-)", **where)
     bar.set_ticks([0, 1, 2], labels=STATES)
@@ -180,18 +186,18 @@ def state_bar(figure, ax, **where):
 
 
 def nice(number):
-    """The largest of 1, 2, 5 times a power of ten that is not above number."""
+    """Returns the largest of 1, 2, 5 times a power of ten up to `number`."""
     power = 10.0 ** np.floor(np.log10(number))
     return float(max(k * power for k in (1, 2, 5) if k * power <= number * (1 + 1e-9)))
 
 
 def draw_polygons_3d(ax, corners, faces, edges, zoom=1.0):
-    """Polygons in a box around them with equal scales, seen from a corner; each in its colour."""
+    """Draws polygons with their colours in a box with equal scales, seen from a corner."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
     ax.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=edges, linewidths=0.3))
     low, high = np.min(np.concatenate(corners), axis=0), np.max(np.concatenate(corners), axis=0)
     flat = high - low < 1e-9 * np.max(high - low)
-    thin = high - low < 0.2 * np.max(high - low)  # where labels of several ticks would overlap
+    thin = high - low < 0.2 * np.max(high - low)  # labels of several ticks would overlap
     room = 0.15 * flat * np.max(high - low)
     for name, a, b, extra, one in zip("xyz", low, high, room, thin):
         axis = getattr(ax, f"{name}axis")
@@ -211,11 +217,12 @@ def draw_polygons_3d(ax, corners, faces, edges, zoom=1.0):
 
 
 def save(figure, picture, dpi):
-    """Writes a PNG of what is drawn, with the labels in 3D, which matplotlib leaves out of the size of axes. Given as its
-    bbox_extra_artists, these would be measured with all else for every one of the axes."""
+    """Writes a PNG file with the labels of 3D axes, which are not in matplotlib's bounding box of axes.
+
+    The argument bbox_extra_artists would be slower: matplotlib would measure these labels once for each of the axes."""
     figure.set_dpi(dpi)
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # all has its place
+    figure.set_layout_engine("none")  # the layout is final
     renderer = figure.canvas.get_renderer()
     labels = [axis.label.get_window_extent(renderer).transformed(figure.dpi_scale_trans.inverted())
               for ax in figure.axes if ax.name == "3d" for axis in (ax.xaxis, ax.yaxis, ax.zaxis)]

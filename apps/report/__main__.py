@@ -1,7 +1,7 @@
-"""Reports on a run in one HTML file, which needs nothing beside it: the scene in words, checks, key figures,
-pictures, a 3D view that can be turned, convergence and timing.
+"""Writes a report on a run as one self-contained HTML file. The report contains the scene, checks, key figures, pictures,
+a 3D view, convergence and timing.
 
-DIR is the output directory of `sprekk run`; the report is DIR/report.html."""
+DIR is the output directory of `sprekk run`. The report is DIR/report.html."""
 import argparse
 import subprocess
 import sys
@@ -21,12 +21,12 @@ def arguments(words):
     parser.add_argument("directory", metavar="DIR", type=Path, help="output directory of a run")
     parser.add_argument("--output", type=Path, metavar="FILE", help="write the report there")
     parser.add_argument("--dpi", type=int, default=110, help="dots per inch of pictures (default: 110)")
-    parser.add_argument("--viewer", type=Path, help=argparse.SUPPRESS)  # the bundle of the 3D view, by the launcher
+    parser.add_argument("--viewer", type=Path, help=argparse.SUPPRESS)  # bundle of the 3D view, set by the launcher
     return parser.parse_args(words)
 
 
 def pictures(directory, dpi):
-    """(name, PNG) of each picture that `sprekk plot` draws, and what it says of those that it leaves out."""
+    """Returns (name, PNG) of each picture of `sprekk plot`, and its messages about missing pictures."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
             [sys.executable, "-B", str(ROOT / "apps" / "plot"), str(directory), "--output", folder, "--dpi", str(dpi)],

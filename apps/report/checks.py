@@ -1,15 +1,15 @@
-"""What speaks for a result and what against it: convergence, laws of contact, balances."""
+"""Checks of a result: convergence, contact laws, balances, estimated errors."""
 from collections import namedtuple
 
 import numpy as np
 from numbers_in_words import RATES, number, quantity
 
-Check = namedtuple("Check", "name verdict words")  # verdict: "passed", "failed", or "noted" where there is no bound
-MOST_UNBALANCED = 1e-6  # of the largest reaction or force on a fracture
-WORST_VIOLATION = 1e-6  # of the largest displacement or traction
-WELL_ESTIMATED = 0.05  # a relative error
+Check = namedtuple("Check", "name verdict words")  # verdict: "passed", "failed", or "noted" without a bound
+MOST_UNBALANCED = 1e-6  # relative to the largest reaction or force on a fracture
+WORST_VIOLATION = 1e-6  # relative to the largest displacement or traction
+WELL_ESTIMATED = 0.05  # relative error
 LOADS = "traction", "confining pressure", "foundation stiffness", "body force", "gravity", "periodic"
-JUDGED_STEPS = 200  # written steps; more take long to read
+JUDGED_STEPS = 200  # limit of written steps, for the time to read them
 
 
 def of_run(directory, content, scene):
@@ -52,12 +52,12 @@ def halvings(steps):
 
 
 def contact(directory, content, scene):
-    """By the files that the run wrote, independently of the solver."""
+    """Checks the contact laws with the files of the run, independently of the solver."""
     import read
     import violation
 
     name = "laws of contact and friction"
-    if scene.entries.get("Stages"):  # they change laws and excavate faces
+    if scene.entries.get("Stages"):  # laws change, faces may be excavated
         return Check(name, "noted", "not judged: the scene has stages")
     written = read.written_steps(directory, "fractures")
     if not written or not all("mean_slip" in f for f in content["steps"][-1].get("fractures", {}).values()):
@@ -66,7 +66,7 @@ def contact(directory, content, scene):
         return Check(name, "noted", f"not judged: more than {JUDGED_STEPS} written steps")
     try:
         _, _, worst, _ = violation.largest(directory, content, violation.Input(directory / "effective_input.xml"))
-    except (ValueError, KeyError, TypeError) as error:  # a law that it does not know, or numbers by expressions
+    except (ValueError, KeyError, TypeError) as error:  # unknown law, or expressions
         return Check(name, "noted", f"not judged: {error}")
     k = int(np.argmax(worst))
     verdict = "passed" if worst[k] <= WORST_VIOLATION else "failed"
@@ -79,8 +79,7 @@ def contact(directory, content, scene):
 
 
 def forces(steps, scene):
-    """Where nothing but prescribed displacements loads the rock, reactions balance each other. The sum is relative to the
-    largest reaction or force on a fracture: the reaction of a single boundary around the rock is round-off."""
+    """Checks the sum of reactions, which vanishes if there are no loads except prescribed displacements."""
     reactions = steps[-1].get("reactions", {})
     if not reactions:
         return
@@ -115,7 +114,7 @@ def fluid(steps, dim):
         unit = RATES[kind][dim == 2]
         through = sum(np.sum(value) for value in last.get(key, {}).values())
         by_wells = sum(through_wells)
-        carried = kind == "heat" and ("inflows" in last or through_wells)  # boundaries' part of that is not known here
+        carried = kind == "heat" and ("inflows" in last or through_wells)  # flux at boundaries is unknown here
         yield Check(
             f"balance of {kind}",
             "noted",
@@ -138,7 +137,7 @@ def estimates(step):
 
 
 def accuracy(content):
-    """The lines that the run ended with."""
+    """Yields the final lines of error control."""
     asked = content.get("accuracy", {"quantities": {}})
     for one in asked["quantities"].values():
         words = one["line"] + ("" if one["reached"] else f": not reached, for {asked['ended']}")

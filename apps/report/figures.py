@@ -1,4 +1,4 @@
-"""Key figures: tables of what the last step holds, and of what the run cost."""
+"""Key figures: tables of the last step, and of the cost of the run."""
 from collections import namedtuple
 
 import numpy as np
@@ -6,7 +6,7 @@ from numbers_in_words import RATES, number, quantity, unit_of
 
 Table = namedtuple("Table", "title columns rows note")
 MOST_ROWS = 30
-NOISE = 1e-9  # of the largest of a column: rounding
+NOISE = 1e-9  # round-off relative to the largest value of a column
 
 OF_FRACTURES = [
     ("area", "length or area", "m"),
@@ -23,7 +23,7 @@ OF_FRACTURES = [
 
 
 def column(title, values, base):
-    """The title with a unit, and texts."""
+    """Returns the title with a unit, and the values as texts."""
     largest = max((abs(value) for value in values if value is not None), default=0)
     factor, unit = unit_of(largest, base) if base else (1, "")
     values = [0 if value is not None and abs(value) <= NOISE * largest else value for value in values]
@@ -33,8 +33,7 @@ def column(title, values, base):
 
 
 def singles(content, step):
-    """Of traces, polygons and ellipses each, as `fractures` of a step has it of their sets; none where the run tells
-    none."""
+    """Returns {name: numbers} of single fractures, in the form of `fractures` of a step; empty without this data."""
     columns = step.get("single_fractures", {})
     return {
         one["name"]: {"area": one["area"], **{key: values[k] for key, values in columns.items()}}
@@ -44,7 +43,7 @@ def singles(content, step):
 
 
 def of_fractures(fractures, dim):
-    """Those that have slipped most first."""
+    """Yields the table of fractures, sorted by slip."""
     names = sorted(fractures, key=lambda name: -(fractures[name].get("max_slip") or 0))
     shown = names[:MOST_ROWS]
     columns = [("fracture", shown)]
@@ -110,7 +109,7 @@ def of_costs(content):
 
 
 def of_run(content):
-    """Tables of results, tables of costs."""
+    """Returns the tables of results and the tables of costs."""
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
     fractures = singles(content, last) or last.get("fractures", {})

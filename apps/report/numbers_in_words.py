@@ -1,4 +1,4 @@
-"""Numbers with units that are easily read."""
+"""Readable numbers with units."""
 import math
 
 PREFIXED = {
@@ -8,13 +8,13 @@ PREFIXED = {
     "s": ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"), (1e-3, "ms")),
     "J": ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1, "J")),
 }
-RATES = {"fluid": ("m³/s", "m²/s"), "heat": ("W", "W/m")}  # in 3D; in 2D, per depth
-LEAST = 0.5, {"s": 2, "m": 0.8}  # of the number in front of a unit
-ROUND = {"m": ("km",)}  # units for round multiples alone
+RATES = {"fluid": ("m³/s", "m²/s"), "heat": ("W", "W/m")}  # in 3D, and per depth in 2D
+LEAST = 0.5, {"s": 2, "m": 0.8}  # smallest number in a unit
+ROUND = {"m": ("km",)}  # not selected for other lengths
 
 
 def unit_of(largest, base):
-    """(factor, unit) that makes the largest of several numbers readable."""
+    """Returns (factor, unit) that makes the largest of several numbers readable."""
     for factor, name in PREFIXED.get(base, ((1, base),)):
         if largest >= LEAST[1].get(base, LEAST[0]) * factor and name not in ROUND.get(base, ()):
             return factor, name
@@ -22,7 +22,7 @@ def unit_of(largest, base):
 
 
 def number(value):
-    """Four digits at most; none of them for show."""
+    """Returns the number with at most four significant digits."""
     if value is None or isinstance(value, float) and not math.isfinite(value):
         return "–"
     text = f"{value:.4g}"
@@ -33,7 +33,7 @@ def number(value):
 
 
 def quantity(value, base=""):
-    """A number and its unit."""
+    """Returns a number with its unit."""
     if value is None:
         return "–"
     factor, unit = unit_of(abs(value), base) if base else (1, "")
@@ -41,7 +41,7 @@ def quantity(value, base=""):
 
 
 def in_unit(text, unit):
-    """The text of an entry with the unit of the reference: numbers and lists of them in a readable one."""
+    """Returns the text of an entry with its unit: numbers and lists of numbers in a readable unit."""
     unit = "" if unit == "-" else unit
     words = [word.strip() for word in text.strip("{} ").split(",")] if text.startswith("{") else [text]
     try:

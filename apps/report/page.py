@@ -1,4 +1,4 @@
-"""The page of a report: one HTML file without references to others, for screens, phones and paper."""
+"""HTML page of a report, without external references, for screens, phones and paper."""
 import base64
 import html
 import json
@@ -60,7 +60,7 @@ def summary(results, scene):
 
 
 def scene_in_words(scene):
-    """For each section what it says beside defaults, indented as it is nested."""
+    """Returns the entries that differ from defaults, for each section, with its path."""
     parts = []
     for names, path, entries in scene.blocks():
         place = " › ".join((*path[:-1], ", ".join(names)))
@@ -86,7 +86,7 @@ def figure(name, png):
 
 
 def view_part(view, viewer):
-    """The 3D view, or why there is none; the script comes last in the page."""
+    """Returns the 3D view or a note, and the script for the end of the page."""
     if viewer is None:
         return (
             "<p class='note'>This report has no 3D view: its viewer could not be built when the report was written.</p>",

@@ -1,4 +1,4 @@
-"""A scene in words: what its effective_input.xml holds that is not a default, with units of the reference."""
+"""Description of a scene: entries of effective_input.xml that differ from defaults, with units of the reference."""
 import re
 
 import read
@@ -6,8 +6,9 @@ from numbers_in_words import in_unit
 
 
 class Reference:
-    """(unit, default) of entries, as docs/use/reference.md lists them by section; NAME stands for any name. A meaning with
-    `(2D: m^2/s)` has the unit of that dimension."""
+    """(unit, default) of entries in docs/use/reference.md, by section. NAME matches any name.
+
+    A meaning with `(2D: m^2/s)` gives the unit in 2D."""
 
     def __init__(self, path, dim=3):
         self.sections = {}
@@ -21,7 +22,7 @@ class Reference:
                 section[name.strip()] = per_depth[0] if len(per_depth) == 1 else unit.strip(), default.strip()
 
     def entry(self, path, name):
-        """(unit, default) of an entry of a section; of an unknown one nothing."""
+        """Returns (unit, default) of an entry of a section, or ("", None) if it is unknown."""
         for pattern, section in self.sections.items():
             if len(pattern) == len(path) and all(p in ("NAME", q) for p, q in zip(pattern, path)) and name in section:
                 return section[name]
@@ -36,26 +37,27 @@ def same(value, default):
 
 
 class Scene:
-    """The scene of a run: .entries is a dictionary of texts and of dictionaries."""
+    """Scene of a run. `entries` is a nested dict of texts."""
 
     def __init__(self, directory, reference, dim=3):
         self.entries = read.scene(directory)
         self.reference = Reference(reference, dim)
 
     def has(self, name):
-        """Whether some section has an entry of this name that is not empty."""
+        """Returns whether any section has a nonempty entry of this name."""
         return any(True for _ in read.entries(self.entries, name))
 
     def said(self, path, section):
-        """(entry, value in words) of what is no default."""
+        """Yields (entry, readable value) of entries that differ from defaults."""
         for name, value in section.items():
             unit, default = self.reference.entry(path, name)
             if not isinstance(value, dict) and not same(value, default):
                 yield name, in_unit(value, unit)
 
     def blocks(self, path=(), section=None):
-        """(names of sections, entries) in the order of the file; sections beside each other that say the same are
-        one."""
+        """Returns (names of sections, path, entries) in the order of the file.
+
+        Adjacent sections with equal entries are merged."""
         section = self.entries if section is None else section
         own = tuple(self.said(path, section))
         found = [[(path[-1],), path, own]] if own else []

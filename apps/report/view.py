@@ -1,5 +1,4 @@
-"""What the 3D view shows: the surface of the rock and the fractures, with fields, as arrays in base64. viewer.js
-draws it."""
+"""Data of the 3D view: surface of the rock and fractures, with fields, as arrays in base64 for viewer.js."""
 import base64
 
 import bulk
@@ -9,12 +8,12 @@ import numpy as np
 import read
 from style import STATE_COLOURS, STATES, Quantity, limits, plt, without_noise
 
-MOST_TRIANGLES = 60000  # of each surface; larger ones are thinned out
+MOST_TRIANGLES = 60000  # of each surface; larger surfaces are decimated
 RIBBON = 0.006  # width of a trace in 2D / size of the body
 THROUGH = 0.12  # opacity of rock with fractures inside
 PALETTES = {"slip": "YlOrRd", "tangential jump": "YlOrRd", "opening": "RdBu_r"}
 SAMPLES = 12  # colours of a map
-SHARPEST = 30  # degrees; edges of larger angles are kept
+SHARPEST = 30  # degrees; edges with larger angles are preserved
 
 
 def encoded(values, kind):
@@ -22,7 +21,7 @@ def encoded(values, kind):
 
 
 def field(name, values, base, colours, on, signed=False):
-    """A field in a readable unit, with the ends of its colours as the pictures have them."""
+    """Returns a field in a readable unit, with the same colour range as in the pictures."""
     quantity = Quantity(name, base, values) if base else None
     values, label = (quantity(values), quantity.label) if base else (np.asarray(values), name)
     known = values[np.isfinite(values)]
@@ -56,13 +55,13 @@ def states(values):
 
 
 def triangulated(surface):
-    """Triangles (n, 3), and for each the polygon that it is part of."""
+    """Returns triangles (n, 3) and the index of the polygon of each."""
     owner = np.repeat(np.arange(len(surface.polygons)), [len(p) - 2 for p in surface.polygons])
     return bulk.triangles(surface.polygons), owner
 
 
 def thinned(points, triangles, arrays):
-    """Fewer triangles of about the same surface, with the arrays on points at those that are left."""
+    """Returns a decimated surface, and the arrays at its points."""
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
@@ -90,14 +89,14 @@ def thinned(points, triangles, arrays):
 
 
 def means_at_points(n_points, triangles, values):
-    """Of each point the mean of the triangles around it."""
+    """Returns at each point the mean of the values of the adjacent triangles."""
     corners, total = triangles.ravel(), np.repeat(values, 3)
     count = np.bincount(corners, minlength=n_points)
     return np.bincount(corners, total, minlength=n_points) / np.maximum(count, 1)
 
 
 def content(name, points, triangles, fields, displacement, opacity=1.0):
-    """What viewer.js makes a surface of. Of a thinned one all fields are on points, and states are rounded."""
+    """Returns a surface for viewer.js. A decimated surface has all fields on points, with rounded states."""
     if len(triangles) > MOST_TRIANGLES:
         on_points = [
             f["values"] if f["on"] == "points" else means_at_points(len(points), triangles, f["values"]) for f in fields
@@ -117,7 +116,7 @@ def content(name, points, triangles, fields, displacement, opacity=1.0):
 
 
 def of_rock(surface, centre, through):
-    """Opaque, or such that fractures are seen through it."""
+    """Returns the surface of the rock; `through` makes it transparent to show fractures."""
     triangles, owner = triangulated(surface)
     fields = []
     if "displacement" in surface.point_data:
@@ -142,7 +141,7 @@ def of_rock(surface, centre, through):
 
 
 def at_places(points, values, places):
-    """The mean of values at points that are at one place, for each of the places."""
+    """Returns at each place the mean of the values at the points there."""
     everywhere = np.concatenate([points, places])
     tolerance = 1e-9 * np.max(np.ptp(everywhere, axis=0))
     number = np.unique(np.round(everywhere / tolerance), axis=0, return_inverse=True)[1].reshape(-1)
@@ -154,8 +153,9 @@ def at_places(points, values, places):
 
 
 def ribbons(lines, width):
-    """A band of two triangles for each face of a trace, above the rock; and for each triangle and point the face or
-    point it is of."""
+    """Returns bands for traces, two triangles for each face, slightly above the rock.
+
+    Returns points, triangles, the face of each triangle, and the original point of each point."""
     first, second = (np.array([p[k] for p in lines.polygons]) for k in (0, 1))
     along = lines.points[second] - lines.points[first]
     across = (
@@ -218,7 +218,7 @@ def of_fractures(joints, rock, plane, centre, sizes):
 
 
 def of_run(directory):
-    """Of the last step that was written; None if there is no such step."""
+    """Returns the data of the last written step, or None without one."""
     steps = {kind: dict(read.written_steps(directory, kind)) for kind in ("bulk", "fractures")}
     if not steps["bulk"]:
         return None
@@ -242,7 +242,7 @@ def of_run(directory):
 
 
 def points_of(grid):
-    """All points of a grid with their data, as a surface without polygons."""
+    """Returns all points of a grid with their data, as arguments of a surface without polygons."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     return vtk_to_numpy(grid.GetPoints().GetData()), [], {}, read.arrays(grid.GetPointData())
