@@ -1,11 +1,11 @@
-# What the packages link; an installed Sprekk includes this file as well. Trilinos from 13.4 on has imported targets that
-# are complete; those of 13.2 carry no include directories, and some libraries have no targets at all, hence the wrappers.
+# External libraries, also used by an installed Sprekk. Trilinos 13.4 and later has complete imported targets. In 13.2
+# targets have no include directories or are missing, hence the wrappers.
 find_package(MPI REQUIRED COMPONENTS C CXX)
 find_package(Trilinos REQUIRED COMPONENTS
   Tpetra Thyra ThyraTpetraAdapters Belos Ifpack2 MueLu NOX Sacado Kokkos Teuchos)
 add_library(sprekk_trilinos INTERFACE IMPORTED)
 target_link_libraries(sprekk_trilinos INTERFACE MPI::MPI_CXX)
-# The C++ bindings of Open MPI are unused; without this definition each object file contains them.
+# The C++ bindings of Open MPI are unused. Without this definition each object file contains them.
 target_compile_definitions(sprekk_trilinos INTERFACE OMPI_SKIP_MPICXX)
 if(TARGET Trilinos::all_selected_libs)
   target_link_libraries(sprekk_trilinos INTERFACE Trilinos::all_selected_libs)
@@ -29,6 +29,6 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(ZLIB REQUIRED)
-set(HDF5_PREFER_PARALLEL ON)  # the one that Trilinos has
+set(HDF5_PREFER_PARALLEL ON)  # the variant of Trilinos
 find_package(HDF5 REQUIRED COMPONENTS C HL)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)

@@ -1,11 +1,11 @@
-# With precompiled headers: without it ccache does not recognise files.
+# Flag for precompiled headers, required by ccache.
 set(SPREKK_PRECOMPILED $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 
 # sprekk_grouped(RESULT PREFIX sources... [ALONE paths...])
-# Sets RESULT to files that include the sources of each folder in groups of eight: a group reads each header once and
-# instantiates each template once. Names in unnamed namespaces are therefore unique within a folder. Sources named by
-# ALONE, with large kernels or options of their own, remain single files. Without SPREKK_GROUPS all sources are single
-# files. PREFIX: of the folder in #include.
+# Sets RESULT to files that include the sources of each folder in groups of eight. A group reads each header once and
+# instantiates each template once. Names in unnamed namespaces must therefore be unique in a folder. Sources named by
+# ALONE remain single files: those with large kernels or own options. Without SPREKK_GROUPS all sources are single
+# files. PREFIX is the path of the folder in #include.
 function(sprekk_grouped result prefix)
   cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
   set(files)
@@ -36,15 +36,15 @@ function(sprekk_grouped result prefix)
   set(${result} ${files} ${groups} PARENT_SCOPE)
 endfunction()
 
-# sprekk_unroll(sources...): kernels whose loops -O3 unrolls and vectorises, which halves their time. A precompiled header
-# would replace these optimisations by its own.
+# sprekk_unroll(sources...): compiles kernels with -O3, since unrolling and vectorisation halve their time. A precompiled
+# header would replace these options.
 function(sprekk_unroll)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # sprekk_package(NAME [USES packages...] [LINKS external targets...] [ALONE sources...])
-# A package is every .cpp of its folder and of those in it; one without any is header-only. Includes read
-# "package/header.hpp". ALONE: see sprekk_grouped.
+# Adds a library of all .cpp files in the folder and its subfolders, or a header-only library. Includes have the form
+# "package/header.hpp". For ALONE see sprekk_grouped.
 function(sprekk_package name)
   cmake_parse_arguments(ARG "" "" "USES;LINKS;ALONE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
@@ -79,9 +79,9 @@ function(sprekk_package name)
   install(TARGETS sprekk_${name} EXPORT Sprekk COMPONENT development)
 endfunction()
 
-# Environment of tests. Open MPI may run as root; it uses the memory of this machine at once instead of looking for
-# networks, and a single rank starts without a daemon. mpirun counts one processor, so that several ranks leave it to others
-# while they wait; a single rank waits for none, but MUMPS looks for messages all the time.
+# Environment of tests. Open MPI may run as root, and uses shared memory directly, without a search for networks. A
+# single rank starts without a daemon. mpirun counts one processor, so that waiting ranks yield it to others. A single
+# rank does not wait, but MUMPS polls for messages.
 set(SPREKK_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
   OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_orte_set_default_slots=1 OMPI_MCA_ess_singleton_isolated=1)
 if(CMAKE_SYSTEM_NAME STREQUAL Linux AND NOT SPREKK_SANITIZE)
@@ -90,7 +90,7 @@ endif()
 
 # sprekk_test(NAME COMMAND words... [CONFIGURATIONS of ctest -C] [PROPERTIES name value...])
 # Its label, for ctest -L, is SPREKK_TEST_LABEL of the folder: fast, slow, report, perf, or packages.
-# The time limit ends what hangs and nothing else: the longest test takes a tenth of it on two cores.
+# The time limit is for tests that hang. The longest test takes a tenth of it on two cores.
 function(sprekk_test name)
   cmake_parse_arguments(ARG "" "" "COMMAND;CONFIGURATIONS;PROPERTIES" ${ARGN})
   if(NOT SPREKK_TEST_LABEL)
@@ -102,8 +102,8 @@ function(sprekk_test name)
 endfunction()
 
 # sprekk_tests(NAME [RANKS 1 2 3] [LINKS targets...])
-# One GoogleTest program of all .cpp in the current folder, run on each number of ranks. Those of whole scenes, which
-# link sprekk_model, share a precompiled header.
+# Adds one GoogleTest program of all .cpp files in the current folder, run on each number of ranks. Tests of whole
+# scenes, which link sprekk_model, share a precompiled header.
 function(sprekk_tests name)
   cmake_parse_arguments(ARG "" "" "RANKS;LINKS" ${ARGN})
   if(NOT ARG_RANKS)

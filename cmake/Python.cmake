@@ -1,5 +1,5 @@
-# Python, for tests and for the module sprekk. Debian's packages belong to its own interpreter, which need not be the one
-# found first.
+# Python for tests and for the module sprekk. Debian's packages belong to its own interpreter, which may not be the
+# first one found.
 if(NOT Python_EXECUTABLE)
   find_program(SPREKK_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
   find_program(SPREKK_PYTHON python3)
@@ -7,7 +7,7 @@ if(NOT Python_EXECUTABLE)
 endif()
 set(SPREKK_PYTHON ${Python_EXECUTABLE})
 
-# The module is built where pybind11 is; what it links is then code that may be loaded anywhere.
+# The module is built if pybind11 exists. The libraries it links are then position-independent code.
 set(PYBIND11_FINDPYTHON ON)
 find_package(Python QUIET COMPONENTS Interpreter Development.Module)
 find_package(pybind11 2.10 QUIET)

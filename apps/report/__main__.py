@@ -1,5 +1,5 @@
-"""Writes a report on a run as one self-contained HTML file. The report contains the scene, checks, key figures, pictures,
-a 3D view, convergence and timing.
+"""Writes a report on a run as one self-contained HTML file. It contains the scene, checks, key figures, pictures, a 3D
+view, convergence and timing.
 
 DIR is the output directory of `sprekk run`. The report is DIR/report.html."""
 import argparse

@@ -1,11 +1,11 @@
-# Installs into a scratch prefix, and configures, builds and runs hosts there that know of nothing else.
+# Installs Sprekk to a temporary prefix. Configures, builds and runs hosts that use only this installation.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE output)
 endfunction()
 file(REMOVE_RECURSE ${scratch})
 run(${CMAKE_COMMAND} --install ${build} --prefix ${scratch}/prefix)
 run(${scratch}/prefix/bin/sprekk check ${source}/xml/seed/push_2d.xml)
-file(GLOB package ${scratch}/prefix/lib/python*/dist-packages)  # of Python, where it is built
+file(GLOB package ${scratch}/prefix/lib/python*/dist-packages)  # Python package, if it was built
 if(package)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${package} ${python} -c
     "import sprekk; model = sprekk.Model(sprekk.Scene('${source}/xml/seed/push_2d.xml')); model.run()")
