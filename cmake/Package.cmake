@@ -36,8 +36,8 @@ function(sprekk_grouped result prefix)
   set(${result} ${files} ${groups} PARENT_SCOPE)
 endfunction()
 
-# sprekk_unroll(sources...): compiles kernels with -O3, since unrolling and vectorisation halve their time. A precompiled
-# header would replace these options.
+# sprekk_unroll(sources...): compiles kernels with -O3, since unrolling and vectorisation halve their time. A
+# precompiled header would replace these options.
 function(sprekk_unroll)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
 endfunction()

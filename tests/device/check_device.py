@@ -1,21 +1,20 @@
 #!/usr/bin/env python3
-"""Compiles the kernels of packages/physics and packages/assembly, and the laws in them, for a GPU; runs nothing.
+"""Compiles the kernels of packages/physics and packages/assembly, and their laws, for a GPU, without execution.
 
     check_device.py ROOT [--for hip|cuda] [--kokkos CHECKOUT] [FILE...]
-        all that have kernels, or these; exit status 1: errors, 77: skipped
+        all files with kernels, or the given ones; exit status 1: errors, 77: skipped
 
-hip:  clang, -fsyntax-only, of device code alone. Needs clang 19 or later (SPREKK_CLANG names another) and the headers
-      of HIP: Debian's clang-19, hipcc, libamdhip64-dev, rocm-device-libs.
-cuda: nvcc, which also generates device code. Needs version 12 or later. It knows rules of CUDA that clang does not:
-      no kernel as a lambda in a private member or in a function made for a lambda's type, no host variable in device
-      code. It may crash; files where it does are told, and say nothing.
+hip:  clang -fsyntax-only, device code only. Requires clang 19 or later (SPREKK_CLANG names another) and the headers of
+      HIP: Debian's clang-19, hipcc, libamdhip64-dev, rocm-device-libs.
+cuda: nvcc, which also generates device code. Requires version 12 or later. It checks rules of CUDA that clang ignores:
+      no kernel as a lambda in a private member or in a function template for a lambda, no host variable in device code.
+      If nvcc crashes, the file is reported, but not as an error.
 
-Both take the installed headers of Trilinos, whose Kokkos (3.4) is configured for the host alone: for the time of the
-check a few configuration headers are overlaid by copies that have the GPU's back end on.
+Both use the installed headers of Trilinos, with a Kokkos (3.4) for the host only. Modified copies of some configuration
+headers select the back end of the GPU during the check.
 
-With --kokkos (or SPREKK_KOKKOS) for hip also the programs beside this file, with a checkout of a later Kokkos; they
-need no more of Trilinos than Sacado.
-"""
+With --kokkos (or SPREKK_KOKKOS), hip also compiles the programs in this folder with a checkout of a later Kokkos. They
+need only Sacado from Trilinos."""
 import argparse
 import os
 import re
@@ -27,7 +26,7 @@ from pathlib import Path
 
 TRILINOS = Path(os.environ.get("SPREKK_TRILINOS_INCLUDE", "/usr/include/trilinos"))
 HAS_KERNELS = re.compile(r"\bKOKKOS_LAMBDA\b|\bAssembler<|\bKernelModule\b|\bmake_kernel_module\b|\bTerm\b|\bparallel_\w+")
-BACK_ENDS = {  # name in folders, what Kokkos and Tpetra have on
+BACK_ENDS = {  # back end: (name in header paths, name of its setup header, settings of Kokkos)
     "hip": ("HIP", "HIP", ["HIP", "ARCH_VEGA906"]),
     "cuda": ("CUDA", "Cuda", ["CUDA", "CUDA_LAMBDA", "CUDA_UVM", "CUDA_CONSTEXPR", "ARCH_AMPERE", "ARCH_AMPERE80"]),
 }
@@ -47,7 +46,7 @@ def switched_on(text, names):
 
 
 def overlay(folder, back_end):
-    """Copies of configuration headers with the back end on."""
+    """Writes copies of configuration headers with the back end enabled."""
     name, folder_name, settings = BACK_ENDS[back_end]
     read = lambda header: (TRILINOS / header).read_text()
     names = ["KOKKOS_" + ("" if s.startswith("ARCH") else "ENABLE_") + s for s in settings]
@@ -61,13 +60,13 @@ def overlay(folder, back_end):
             text[:at] + f"#include <{include}.hpp>\n" + text[at:])
     tpetra = switched_on(read("TpetraCore_config.h"), [f"HAVE_TPETRA_INST_{name}", f"HAVE_TPETRA_{name}"])
     (folder / "TpetraCore_config.h").write_text(tpetra)
-    if back_end == "cuda":  # numbers of half precision: they name functions that CUDA has no more
+    if back_end == "cuda":  # types of half precision use functions that CUDA has removed
         (folder / "Cuda").mkdir()
         (folder / "Cuda/Kokkos_Cuda_Half.hpp").write_text("")
 
 
 def overlay_checkout(folder, kokkos):
-    """What CMake would write for a checkout of Kokkos 4 with HIP; returns where headers are."""
+    """Writes the configuration of CMake for a checkout of Kokkos 4 with HIP; returns the include folders."""
     found = dict(re.findall(r"set\(Kokkos_VERSION_(\w+) (\d+)\)", (kokkos / "CMakeLists.txt").read_text()))
     version = [int(found[part]) for part in ("MAJOR", "MINOR", "PATCH")]
     settings = ["CORE_CONFIG_H", f"VERSION {version[0] * 10000 + version[1] * 100 + version[2]}",
@@ -81,14 +80,14 @@ def overlay_checkout(folder, kokkos):
     (folder / "desul/atomics").mkdir(parents=True)
     (folder / "desul/atomics/Config.hpp").write_text("#define DESUL_ATOMICS_ENABLE_HIP\n")
     (folder / "sacado").mkdir()
-    for header in TRILINOS.glob("Sacado*"):  # without the Kokkos beside them
+    for header in TRILINOS.glob("Sacado*"):  # without the headers of Kokkos in the same folder
         shutil.copy(header, folder / "sacado")
     return [folder, *(kokkos / part for part in ("core/src", "containers/src", "tpls/desul/include", "tpls/mdspan/include")),
             Path(__file__).parent / "sacado", folder / "sacado"]
 
 
 def compile_all(command, files, back_end):
-    """Whether there were no errors."""
+    """Compiles the files; returns whether there were no errors."""
     wrong, crashed = [], []
     for file in files:
         done = subprocess.run([*command, str(file)], capture_output=True, text=True)
@@ -113,13 +112,13 @@ def first_of(*names):
 
 
 def compiler(back_end):
-    """The command without includes and files."""
+    """Returns the compiler command without include folders and files."""
     if back_end == "cuda":
         nvcc = first_of("nvcc", "/usr/local/cuda/bin/nvcc")
         if not nvcc:
             skip("no nvcc")
         return [nvcc, "-x", "cu", "-cuda", "-o", os.devnull, "-arch=sm_80", "--expt-extended-lambda",
-                "--expt-relaxed-constexpr", "-DFMT_CONSTEVAL="]  # of fmt: nvcc takes its checks for errors
+                "--expt-relaxed-constexpr", "-DFMT_CONSTEVAL="]  # fmt: nvcc reports its compile-time checks as errors
     clang = first_of(os.environ.get("SPREKK_CLANG"), "clang++-19", "clang++-20")
     device_library = next(iter(sorted(Path("/usr/lib").glob("*/amdgcn/bitcode"))), None)
     if not clang:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The build of the kernels alone configures with an nvcc_wrapper that falls back on an architecture which nvcc does not know:
+"""Tests the build of the kernels with an nvcc_wrapper whose default architecture is unknown to nvcc:
 wrapper_test.py ROOT CMAKE KOKKOS
 
-KOKKOS is the folder with KokkosConfig.cmake. Of nvcc there is a stand-in: it takes one architecture, from sm_75 on."""
+KOKKOS is the folder with KokkosConfig.cmake. A mock of nvcc accepts one architecture, at least sm_75."""
 import subprocess
 import sys
 import tempfile
@@ -29,7 +29,7 @@ def main():
         done = subprocess.run([*words, "-B", name + "/build"], capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr
         flags = (Path(name) / "build/CMakeFiles/kernels_device.dir/flags.make").read_text()
-        assert "-DMINE" in flags and "-arch=" not in flags, flags  # that of the kernels is for Kokkos to add
+        assert "-DMINE" in flags and "-arch=" not in flags, flags  # Kokkos adds the architecture of the kernels
         done = subprocess.run([*words, "-B", name + "/old", "-DSPREKK_CUDA_ARCH=sm_70"], capture_output=True, text=True)
         assert done.returncode != 0 and "sm_70" in done.stdout + done.stderr, done.stdout + done.stderr
 

@@ -1,23 +1,24 @@
 #!/usr/bin/env python3
-"""Holds the documentation to what is true.
+"""Checks the documentation.
 
-    check_docs.py quotes ROOT              code in a ```cpp, ```xml or ```cmake block is literally in the file that the comment
-                                           before the block names (<!-- from PATH -->), relative links lead somewhere, and
-                                           the version is that of CMakeLists.txt
+    check_docs.py quotes ROOT              Code in a ```cpp, ```xml or ```cmake block is equal to text of the file in
+                                           the comment before the block (<!-- from PATH -->). Relative links are valid. The
+                                           version is that of CMakeLists.txt.
     check_docs.py commands ROOT BINARY MPIEXEC PAGES...
-                                           every command in a ```sh or ```console block of the pages ends with status 0,
-                                           or N if "# exit N" follows; the lines below a command in a ```console block
-                                           are lines of what it prints. Blocks after <!-- not run: REASON --> are left
-                                           out, as are the commands that build. Pages share a folder, and a scene that
-                                           several run or plot in the same way is run and plotted once
-    check_docs.py reference ROOT BINARY    docs/use/reference.md, docs/sprekk.rng and docs/use/materials.md are what the binary prints
+                                           Each command in a ```sh or ```console block ends with status 0, or N if
+                                           "# exit N" follows. The lines below a command in a ```console block are part
+                                           of its output. Blocks after <!-- not run: REASON --> and commands that build
+                                           are skipped. The pages share a folder. A scene that several pages run or plot
+                                           in the same way is run and plotted once.
+    check_docs.py reference ROOT BINARY    docs/use/reference.md, docs/sprekk.rng and docs/use/materials.md are equal to
+                                           the output of the binary.
     check_docs.py change ROOT PAGE TARGETS...
-                                           the page's ```diff block applies to a copy of the sources, the targets build
-                                           there, and the ```console blocks that are "not run" elsewhere come true
-    check_docs.py doxygen ROOT FOLDER      docs/Doxyfile makes FOLDER/doxygen of the public headers without warnings
+                                           The ```diff block of the page applies to a copy of the sources, and the
+                                           targets build there. The ```console blocks that are "not run" elsewhere have
+                                           the given output.
+    check_docs.py doxygen ROOT FOLDER      docs/Doxyfile generates FOLDER/doxygen without warnings.
 
-Prints what is wrong; exit status 1 if anything is, 77 if a command could not be run since a program is missing.
-"""
+Prints the errors. Exit status 1 after an error, 77 if a program for a command is missing."""
 import os
 import re
 import shlex
@@ -33,7 +34,7 @@ LINK = re.compile(r"\[[^\]]*\]\((?!https?:|#|mailto:)([^)#\s]+)[^)]*\)")
 
 
 class Skipped(str):
-    """What could not be tested."""
+    """Description of a skipped check."""
 
 
 def pages(root):
@@ -64,7 +65,7 @@ def check_quotes(root):
                 yield f"{page.relative_to(root)}: the link {link[1]} leads nowhere"
 
 
-# What ./sprekk does with these commands, without building first.
+# Replacement of ./sprekk for these commands, without a build.
 LAUNCHER = """#!/usr/bin/env bash
 words=() mpi=() sets=()
 while (($#)); do
@@ -92,7 +93,7 @@ PLOT_PYTHON = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else "pyt
 
 
 def prepare(folder, root, binary, mpiexec):
-    """Gives the folder what a user has: the scenes and pages, ./sprekk, and the program where a build puts it."""
+    """Copies the files of a user to the folder: scenes, pages, ./sprekk, and the program at the place of a build."""
     for name in ("xml", "docs", "tests/data", "perf/experiments"):
         shutil.copytree(root / name, folder / name)
     launcher = folder / "sprekk"
@@ -105,7 +106,7 @@ def prepare(folder, root, binary, mpiexec):
 
 
 def commands(block):
-    """(command, lines that it prints) of each command in the block."""
+    """Returns (command, expected lines) of each command in the block."""
     found = []
     for line in block["content"].replace("\\\n", "").splitlines():
         if block["kind"] == "console" and not line.startswith("$ "):
@@ -116,7 +117,7 @@ def commands(block):
 
 
 def missing_program(command):
-    """What the command needs and this machine lacks, or None."""
+    """Returns the missing program or modules of a command, or None."""
     needs = {"plot": "matplotlib, numpy, vtkmodules", "mesh": "gmsh, matplotlib, numpy, shapely",
              "fit": "matplotlib, numpy, scipy"}
     words = command.split()
@@ -147,7 +148,7 @@ def check_commands(root, binary, mpiexec, *pages):
 
 
 def check_change(root, page, *targets):
-    """ccache, where it is, knows what the change does not touch."""
+    """Yields the errors of a page with a change of the sources. With ccache only changed files are compiled."""
     if missing := [program for program in ("cmake", "ninja", "patch") if not shutil.which(program)]:
         yield Skipped(f"not run, this machine lacks {missing[0]}")
         return
@@ -170,7 +171,7 @@ def check_change(root, page, *targets):
 
 
 def check_block(page, block, folder, runs=None):
-    """Runs the commands of a block in the folder and compares what they print; `runs` has those that other blocks may repeat."""
+    """Runs the commands of a block in the folder and yields errors; `runs` stores repeatable commands."""
     for command, expected in commands(block):
         if missing := missing_program(command):
             yield Skipped(f"{page}: {command}: not run, this machine lacks {missing}")

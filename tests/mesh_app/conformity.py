@@ -1,4 +1,4 @@
-"""Networks built in place, and whether a mesh keeps to one: compared with geometry that the mesher does not use."""
+"""Networks for tests, and checks that a mesh conforms to one, with geometry that the mesher does not use."""
 import sys
 from collections import Counter
 from pathlib import Path
@@ -20,7 +20,7 @@ CUBE = {**SQUARE, "lower corner": [0.0, 0.0, 0.0], "upper corner": [1.0, 1.0, 1.
 
 
 def as_xml(name, entries):
-    """A description as `sprekk network` prints it."""
+    """Returns a description in the format of `sprekk network`."""
     text = f'<ParameterList name="{name}">'
     for key, value in entries.items():
         if isinstance(value, dict):
@@ -39,7 +39,7 @@ def numbers(points):
 
 
 def network(fractures, domain=None, **entries):
-    """Of fractures by name, each a list of points or (centre, radii, strike, dip, rake), each in a set of its own."""
+    """Returns a Network of {name: points or (centre, radii, strike, dip, rake)}, each fracture in its own set."""
     sets = {}
     for name, points in fractures.items():
         if isinstance(points, tuple):
@@ -64,7 +64,7 @@ def meshed(net):
 
 
 def sizes_of(points, elements):
-    """Length, area or volume of each element."""
+    """Returns the length, area or volume of each element."""
     x = points[elements]
     edges = x[:, 1:] - x[:, :1]
     gram = np.einsum("nij,nkj->nik", edges, edges)
@@ -72,13 +72,13 @@ def sizes_of(points, elements):
 
 
 def measure_of(plan, mesh, group):
-    """Length or area of the faces of a set or a side."""
+    """Returns the length or area of the faces of a set or a side."""
     owners = [k for k, owner in enumerate(plan.owners) if owner.group == group]
     return sizes_of(mesh.points, mesh.faces[np.isin(mesh.face_owner, owners)]).sum()
 
 
 def defects(plan, mesh, tolerance=1e-9):
-    """What is wrong with a mesh, as a list of words."""
+    """Returns the defects of a mesh as a list of texts."""
     found, dim = [], plan.dim
     volume = sizes_of(mesh.points, mesh.cells)
     if abs(volume.sum() - plan.network.domain.volume) > 1e-9 * plan.network.domain.volume:
@@ -102,7 +102,7 @@ def defects(plan, mesh, tolerance=1e-9):
 
 
 def frame_of(owner, dim):
-    """(point, normal, axes) of a fracture; of a polyline there are several."""
+    """Yields (points, normal) of a fracture; of each segment of a polyline."""
     x = owner.points
     if dim == 2:
         for a, b in zip(x, x[1:]):
@@ -125,7 +125,7 @@ def off_plane(plan, mesh, tolerance):
 
 
 def crossing(plan, mesh, tolerance):
-    """Edges of cells through the inside of a fracture."""
+    """Returns defects: edges of cells that cross the interior of a fracture."""
     dim, found = plan.dim, []
     edges = np.unique(np.concatenate([np.sort(mesh.cells[:, [i, j]], axis=1) for i in range(dim + 1) for j in range(i)]), axis=0)
     begin, end = (mesh.points[edges[:, k]][:, :dim] for k in (0, 1))
@@ -140,8 +140,9 @@ def crossing(plan, mesh, tolerance):
 
 
 def is_inside(points, x, normal, margin):
-    """Whether points in the plane of a polygon (or on the line of a segment) are inside by a margin: by the angle that its
-    corners turn around them."""
+    """Returns whether points are inside a polygon by a margin, from the sum of the angles of its edges.
+
+    The points are in the plane of the polygon. In 2D they are on the line of a segment."""
     if len(x[0]) == 2:
         length = np.linalg.norm(x[1] - x[0])
         s = (points - x[0]) @ (x[1] - x[0]) / length

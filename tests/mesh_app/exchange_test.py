@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fracture networks in files of geographic information systems and drawings: exchange_test.py PROGRAM ROOT MPIEXEC
 
-Needs Debian's python3-gdal; without it it ends with status 77, which ctest shows as skipped."""
+Requires Debian's python3-gdal. Without it the status is 77, for ctest's "skipped"."""
 import importlib.util
 import json
 import re
@@ -31,7 +31,7 @@ TRACES = {"F1": [[0.2, 0.5], [0.8, 0.5]], "F2": [[0.5, 0.2], [0.5, 0.6], [0.6, 0
 
 class ExchangeTest(ProgramTest):
     def geojson(self, features, name="net.geojson", **members):
-        """`features`: (kind of geometry, coordinates, attributes)."""
+        """Writes a GeoJSON file; `features` are (type of geometry, coordinates, attributes)."""
         content = {
             "type": "FeatureCollection",
             **members,
@@ -68,7 +68,7 @@ class ExchangeTest(ProgramTest):
         return path
 
     def in_unit(self, drawing, unit):
-        """The drawing, which says that it is in this unit of DXF."""
+        """Returns the drawing after setting its unit to a code of DXF."""
         text, count = re.subn(r"(\$INSUNITS\s+70\s+)\d+", rf"\g<1>{unit}", drawing.read_text())
         self.assertEqual(count, 1)
         drawing.write_text(text)
@@ -105,7 +105,7 @@ class ExchangeTest(ProgramTest):
         self.assertEqual([row.name for row in several], ["both", "both"])
 
     def test_files_of_other_programs(self):
-        """Written by GDAL: a shapefile with a projected system or none, a GeoPackage, polylines of a drawing."""
+        """Reads files written by GDAL: shapefiles with and without a system, a GeoPackage, polylines of a drawing."""
         self.expect_traces(exchange.read(self.write_by_ogr("ESRI Shapefile", "utm.shp", 25832), 2))
         self.expect_traces(exchange.read(self.write_by_ogr("ESRI Shapefile", "local.shp"), 2))
         self.expect_traces(exchange.read(self.write_by_ogr("GPKG", "net.gpkg", 25832), 2))
@@ -204,7 +204,7 @@ class ExchangeTest(ProgramTest):
         return Network(as_xml("network", {**DEFAULTS, "domain": domain, "fractures": {"set": {"file": str(path)}}}))
 
     def test_equal_names(self):
-        """Features of one name are one fracture where they meet at their ends, or are parts of one feature."""
+        """Features with one name form one fracture if their ends meet, or if they are parts of one feature."""
         lines = [[[0.1, 0.1], [0.2, 0.1]], [[0.2, 0.1], [0.3, 0.2]], [[0.5, 0.5], [0.6, 0.5]]]
         features = [("LineString", x, {"id": 0, "Remark": "a \"b\""}) for x in lines]
         bent = self.network(self.geojson(features[:2], crs=None)).fractures
@@ -218,7 +218,7 @@ class ExchangeTest(ProgramTest):
         self.assertEqual([one.single for one in several], ["both"] * 3)
 
     def test_network(self):
-        """In a scene: a file by its ending, in the place of a CSV; what belongs to a shapefile counts as input, too."""
+        """In a scene the ending determines the file type. All files of a shapefile are input files."""
         path = self.write_by_ogr("ESRI Shapefile", "net.shp")
         domain = {"corners": [], "faces": {}, **SQUARE}
         network = Network(as_xml("network", {**DEFAULTS, "domain": domain, "fractures": {"set": {"file": str(path)}}}))

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Fractures with results for geographic information systems: export_test.py PROGRAM ROOT MPIEXEC
+"""Export of fractures to geographic information systems: export_test.py PROGRAM ROOT MPIEXEC
 
-Needs Debian's python3-gdal, python3-numpy, python3-matplotlib and python3-vtk9; without one of them it ends with
-status 77, which ctest shows as skipped."""
+Requires Debian's python3-gdal, python3-numpy, python3-matplotlib and python3-vtk9. If one is missing, the status is 77,
+for ctest's "skipped"."""
 import contextlib
 import importlib.util
 import io
@@ -41,8 +41,9 @@ class ExportTest(ProgramTest):
         return json.loads((self.folder / file).read_text())["features"] if file.endswith("json") else None
 
     def test_traces(self):
-        """Lines from end to end, without the points of the mesh; values are those of the results; shapefiles say the
-        same."""
+        """Traces are lines between their ends, without mesh points, with the values of the results.
+
+        Shapefiles are equal."""
         steps = self.run_scene("verification/crossing_2d.xml")["steps"]
         found = {feature["properties"]["name"]: feature for feature in self.export("net.geojson")}
         self.assertEqual(sorted(found), sorted(steps[-1]["fractures"]))
@@ -68,7 +69,7 @@ class ExportTest(ProgramTest):
         self.assertEqual(len(exchange.read(str(self.folder / "net.geojson"), 2)), len(found))
 
     def test_shapefiles_keep_large_numbers(self):
-        """Their numbers have a width."""
+        """Shapefiles store numbers with a fixed width."""
         (wanted,) = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=2")["steps"][-1]["fractures"].values()
         self.export("net.shp")
         (row,) = exchange.read(str(self.folder / "net.shp"), 2)
@@ -77,7 +78,7 @@ class ExportTest(ProgramTest):
         self.assertTrue(np.isclose(float(row.properties["slip_mean"]), wanted["mean_slip"], rtol=1e-9))
 
     def test_planes(self):
-        """An outline of the fracture with its corners alone; read again it is the polygon of the scene."""
+        """A plane fracture is an outline of its corners, equal to the polygon of the scene."""
         steps = self.run_scene("seed/immersed_3d.xml", "Mesh.cells={6, 6, 6}", "Time.steps=1")["steps"]
         (one,) = self.export("net.geojson", "--time", "1")
         ((name, wanted),) = steps[-1]["fractures"].items()
@@ -114,8 +115,9 @@ class ExportTest(ProgramTest):
         self.assertIn("results.json: the content is [], expected an object;", self.export("net.geojson", expect=1))
 
     def test_damaged_files(self):
-        """A fracture whose file is empty, cut or missing is one error with its name, without lines of VTK; an earlier
-        file stays as it is."""
+        """An empty, truncated or missing file gives one error with its name and no messages of VTK.
+
+        An earlier export stays."""
         self.run_scene("verification/crossing_2d.xml")
         piece = sorted((self.folder / "out/fractures").glob("fractures_*.vtu"))[-1]
         whole, made = piece.read_bytes(), self.folder / "net.geojson"
@@ -131,7 +133,7 @@ class ExportTest(ProgramTest):
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["net.geojson", "out"])
 
     def test_blocks_of_earlier_versions(self):
-        """Pieces in place of nested blocks."""
+        """Earlier versions wrote pieces instead of nested blocks."""
         self.run_scene("verification/crossing_2d.xml")
         names = [feature["properties"]["name"] for feature in self.export("net.geojson")]
         for file in (self.folder / "out").glob("fractures_*.vtm"):
@@ -139,7 +141,7 @@ class ExportTest(ProgramTest):
         self.assertEqual([feature["properties"]["name"] for feature in self.export("net.geojson")], names)
 
     def test_shapefiles_are_replaced(self):
-        """With all the files that belong to them."""
+        """An export replaces all files of a shapefile."""
         self.run_scene("verification/crossing_2d.xml")
         for words, endings in ((("--crs", "EPSG:25832"), {".prj"}), ((), set())):
             self.export("net.shp", *words)

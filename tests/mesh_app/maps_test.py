@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Maps as they are published, of which a network takes a part: maps_test.py PROGRAM ROOT MPIEXEC
+"""Published maps, of which a network uses a part: maps_test.py PROGRAM ROOT MPIEXEC
 
-Needs Debian's python3-gdal; without it it ends with status 77, which ctest shows as skipped."""
+Requires Debian's python3-gdal. Without it the status is 77, for ctest's "skipped"."""
 import importlib.util
 import json
 import sys
@@ -40,7 +40,7 @@ class MapsTest(ProgramTest):
         return str(path)
 
     def drawing(self, unit=6):
-        """A frame on the sides, a scale bar outside, two joints of length 0.6 and 0.5 and a cleavage."""
+        """Writes a drawing: frame on the sides, scale bar outside, two joints of length 0.6 and 0.5, a cleavage."""
         lines = {"FRAME": [[0, 0, 1, 0], [0, -0.1, 1, -0.1]], "JOINTS": [[0.2, 0.4, 0.8, 0.4], [0.4, 0.2, 0.4, 0.7]],
                  "CLEAVAGE": [[0.1, 0.9, 0.3, 0.9]]}
         scale = 1 if unit == 6 else 1000
@@ -143,7 +143,7 @@ class MapsTest(ProgramTest):
             self.assertIn(part, self.refusal({"traces": {"file": self.file("a.csv", text)}}))
 
     def test_discs_are_no_points(self):
-        """Titles of another kind of table are not read as points."""
+        """Titles of a table of discs are not read as titles of points."""
         file = self.file("a.csv", "x,y,z,dip,dip direction,radius,number\n0.5,0.5,0.5,70,60,0.2,1\n")
         with self.assertRaises(NetworkError) as caught:
             network(3, {"joints": {"file": file}})

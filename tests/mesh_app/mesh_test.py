@@ -13,14 +13,14 @@ from sizes import Sizes
 
 
 def square_at(axis, place, low=0.2, high=0.8):
-    """A square across an axis."""
+    """Returns a square normal to an axis."""
     flat = np.array([[low, low], [high, low], [high, high], [low, high]], float)
     return np.insert(flat, axis, place, axis=1)
 
 
 class Conformity(unittest.TestCase):
     def expect(self, fractures, measures=None, domain=None, intersections=None, **entries):
-        """The mesh keeps to the network, and each set has the length or area that is expected."""
+        """Checks that the mesh conforms to the network, and that each set has the expected length or area."""
         plan, mesh = meshed(network(fractures, domain, **entries))
         self.assertEqual(defects(plan, mesh), [])
         for name, measure in (measures or {}).items():
@@ -48,7 +48,7 @@ class Lines(Conformity):
         self.assertTrue(np.allclose(mesh.points[mesh.intersections[0, 0]], [0.5, 0.5, 0], atol=1e-12))
         _, none = self.expect({"a": [[0.2, 0.5], [0.8, 0.5]]}, intersections=0)
         self.assertEqual(none.intersections.shape, (0, 1))
-        self.expect(dict(star(3, False)), {f"f{k}": 0.3 for k in range(3)}, intersections=1)  # Y
+        self.expect(dict(star(3, False)), {f"f{k}": 0.3 for k in range(3)}, intersections=1)  # Y-shaped
 
     def test_polyline(self):
         self.expect({"a": [[0.2, 0.2], [0.5, 0.3], [0.6, 0.8]], "b": [[0.1, 0.6], [0.9, 0.6]]},
@@ -59,7 +59,7 @@ class Lines(Conformity):
                      "corner": [[0, 0], [0.2, 0.2]]}, {"a": 0.5, "through": 1, "touches": 0.3, "corner": np.hypot(0.2, 0.2)})
 
     def test_lines_that_turn_but_not_back(self):
-        """Short segments of a curve are no fold, nor is a line that is closed."""
+        """Short segments of a curve, or a closed line, are not rejected as folds."""
         angle = np.linspace(0, np.pi, 60)
         curve = np.column_stack([0.5 + 3e-3 * np.cos(angle), 0.5 + 3e-3 * np.sin(angle)])
         planned(network({"a": curve, "b": [[0.2, 0.2], [0.4, 0.2], [0.3, 0.4], [0.2, 0.2]]}))
@@ -79,7 +79,7 @@ class Lines(Conformity):
         self.assertEqual(defects(plan, mesh), [])
 
     def test_sides_stay_straight(self):
-        """Ends and crossings that are joined to a side move onto it."""
+        """Ends and crossings that are joined to a side of the domain move onto it."""
         lines = {"a": [[0.3, 0.001], [0.3, 0.5]], "b": [[0.6, 0.5], [0.65, -0.001]], "c": [[0.799, 0.5], [0.801, -0.5]], "d": [[0.75, -0.03], [0.85, 0.033]]}
         plan, mesh = meshed(network(lines, tolerance=5e-3))
         self.assertEqual(defects(plan, mesh, 6e-3), [])
@@ -95,7 +95,7 @@ class Lines(Conformity):
         self.assertNotIn("line", groups)
 
     def test_sizes(self):
-        """Edges at tips, intersections and the boundary are as long as asked for, and grow away from them."""
+        """Edges at tips, intersections and the boundary have the required length, and are longer away from them."""
         plan, mesh = meshed(network({"a": [[0.2, 0.5], [0.8, 0.5]], "b": [[0.5, 0.2], [0.5, 0.8]]}, relative_size=0.1, size_at_tips=0.003,
                                     size_at_intersections=0.01, size_at_boundary=0.05, size=0.2))
         edges = np.unique(np.sort(np.concatenate([mesh.cells[:, [0, 1]], mesh.cells[:, [1, 2]], mesh.cells[:, [2, 0]]]), axis=1), axis=0)
@@ -110,7 +110,7 @@ class Lines(Conformity):
 
 
     def test_default_sizes(self):
-        """A tenth of the fracture along it, a twentieth of that at its tips, unless the domain is smaller."""
+        """Default sizes are 0.1 of the length along a fracture, and 0.05 of that at its tips."""
         net = network({"a": [[0.2, 0.5], [0.8, 0.5]]}, relative_size=0.1)
         net.size_at["tips"] = None
         plan, mesh = meshed(net)
@@ -119,7 +119,7 @@ class Lines(Conformity):
         self.assertTrue(0.4 * 0.06 < edges[-1] < 1.5 * 0.06, edges[-1])
 
     def test_gaps_are_resolved(self):
-        """Two fractures side by side: cells between them are about as long as the gap is wide."""
+        """Cells between two parallel fractures are about as large as the gap."""
         plan, mesh = meshed(network({"a": [[0.2, 0.5], [0.8, 0.5]], "b": [[0.2, 0.52], [0.8, 0.52]]}))
         quality, _ = gamma(mesh.points, mesh.cells)
         self.assertGreater(quality.min(), 0.3)
@@ -127,7 +127,7 @@ class Lines(Conformity):
 
 class Places(Conformity):
     def test_far_from_the_origin(self):
-        """A metre of rock at coordinates of UTM: the mesh is that of the same rock at the origin, but for rounding."""
+        """A domain of 1 m with UTM coordinates has almost the same mesh as at the origin."""
         lines = {"a": [[0.2, 0.5], [0.8, 0.55]], "b": [[0.5, 0.2], [0.45, 0.8]]}
         planes = {"a": square_at(2, 0.5), "b": square_at(1, 0.6, 0.1, 0.9)}
         for fractures, domain, tip in ((lines, SQUARE, 0.002), (planes, CUBE, 0.04)):
@@ -156,7 +156,7 @@ class Polygons(Conformity):
                 self.expect({"a": a, "b": other}, {"a": 0.36, **({"b": area} if area else {})})
 
     def test_level_polygons_that_share_sides(self):
-        """A fault of triangles, a ring of quadrilaterals, in planes at any angle: shared sides are no fronts."""
+        """Common sides of polygons in one plane, in any orientation, are not tips: a fault and a ring."""
         random = np.random.default_rng(23)
         for case in range(6):
             turn = np.linalg.qr(random.normal(size=(3, 3)))[0] if case else np.eye(3)
@@ -173,7 +173,7 @@ class Polygons(Conformity):
         self.expect_whole(quadrilaterals, 3 * (0.4**2 - 0.2**2), 24 * 0.6 * np.sin(np.pi / 12))
 
     def expect_whole(self, fractures, area, front):
-        """The fractures together have an area, and fronts of a length."""
+        """Checks the total area of the fractures and the total length of their tips."""
         net = network(fractures)
         plan, mesh = meshed(net)
         self.assertEqual(defects(plan, mesh, 1e-6), [])
@@ -198,7 +198,7 @@ class Polygons(Conformity):
         self.expect({"a": a, "b": square_at(1, 0.6, 0.1, 0.9)}, {"a": 0.36 - 0.12, "b": 0.64})
 
     def test_ellipses(self):
-        """A polygon with the area of the ellipse; strike north and dip 90 is the plane x = constant."""
+        """An ellipse is a polygon with its area. Strike north and dip 90 degrees give a plane x = constant."""
         disc, steep = ([0.5, 0.5, 0.5], [0.3, 0.3], 0, 0, 0), ([0.5, 0.5, 0.5], [0.35, 0.2], 0, 90, 0)
         plan, mesh = self.expect({"a": disc, "b": steep, "c": square_at(1, 0.6, 0.3, 0.9)}, {"a": np.pi * 0.09, "b": np.pi * 0.07})
         y, x = (np.ptp(mesh.points[mesh.faces[mesh.face_owner == k]].reshape(-1, 3), axis=0) for k in (6, 7))
@@ -210,7 +210,7 @@ class Polygons(Conformity):
                     {"through": 1, "part": 0.25, "to the side": 0.25})
 
     def test_polyhedron(self):
-        """A prism over an L."""
+        """The domain is a prism with an L-shaped base."""
         flat = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], float)
         low, high = (np.column_stack([flat, np.full(6, z)]) for z in (0, 1))
         faces = {"floor": numbers(low), "roof": numbers(high)}
@@ -233,11 +233,11 @@ class Polygons(Conformity):
 
     def test_fractures_that_cross_within_one_on_a_side_of_a_region(self):
         seam = {**CUBE, "upper corner": [1.0, 1.0, 0.5]}
-        small = (square_at(0, 0.5) - 0.5) * [1, 0.5, 0.5] + 0.5  # its trace ends inside of the other
+        small = (square_at(0, 0.5) - 0.5) * [1, 0.5, 0.5] + 0.5  # the intersection ends inside the other fracture
         self.expect({"on": square_at(2, 0.5), "small": small}, {"on": 0.36, "small": 0.09}, regions={"seam": seam})
 
     def test_near_touches_are_joined_within_the_tolerance(self):
-        short = square_at(0, 0.5) * [1, 1, 0.5] + [0, 0, 0.4005]  # half a millimetre above the other
+        short = square_at(0, 0.5) * [1, 1, 0.5] + [0, 0, 0.4005]  # 0.5 mm above the other
         plan, mesh = meshed(network({"a": square_at(2, 0.5), "b": short}, tolerance=1e-3))
         self.assertGreater(len(mesh.intersections), 0)
         self.assertIn('fracture "b" of "b" and fracture "a" of "a"', plan.repairs[0])
@@ -259,9 +259,9 @@ class Refusals(unittest.TestCase):
         self.refused({"a": a, "b": [[0.3, 0.5], [0.9, 0.5]]}, *both, "lie on each other")
         self.refused({"a": a, "b": a[::-1]}, *both, "are the same")
         self.refused({"a": a, "b": [[0.2, 0.5], [0.8, 0.51]]}, *both, "meet at 0.955 degrees")
-        self.refused({"a": a, "b": [[0.2, 0.505], [0.5, 0.495], [0.8, 0.504]]}, *both, "meet at 1.91 degrees")  # and at 1.72: told once
+        self.refused({"a": a, "b": [[0.2, 0.505], [0.5, 0.495], [0.8, 0.504]]}, *both, "meet at 1.91 degrees")  # and 1.72
         self.refused({"a": a, "b": [[0.5, 0.50005], [0.5, 0.9]]}, *both, "are 5e-05 m apart at (0.5, 0.5)", "minimum distance")
-        self.refused({"a": a, "b": [[0.5, 0.49995], [0.5, 0.9]]}, *both, "are 5e-05 m apart")  # sticks out
+        self.refused({"a": a, "b": [[0.5, 0.49995], [0.5, 0.9]]}, *both, "are 5e-05 m apart")  # beyond it
         self.refused({"a": [[0, 0.2], [0, 0.8]]}, 'fracture "a" of "a": lies on side "west" of domain')
         self.refused({"a": [[1.2, 0.2], [1.5, 0.8]]}, 'fracture "a" of "a": lies outside')
         self.refused({"a": [[0.2, 0.2], [0.2, 0.2]], "b": [[0.1, 0.1], [0.5, 0.1], [0.5, 0.5], [0.2, 0.0]]}, "has no length", "crosses itself", lines=2)
@@ -271,8 +271,8 @@ class Refusals(unittest.TestCase):
     def test_lines_that_fold_back(self):
         parts, minimum = 'parts of fracture "a" of "a"', '"minimum distance" is 0.000141 m'
         self.refused({"a": [[0.1, 0.1], [0.9, 0.9], [0.1, 0.10001]]}, parts, "meet at 0.000358 degrees; the \"minimum angle\" is 2")
-        self.refused({"a": [[0.1, 0.1], [0.9, 0.1], [0.9, 0.11], [0.1, 0.1]]}, parts, "meet at 0.716 degrees")  # where it is closed
-        for end in ([0.1, 0.1001], [0.2, 0.1001], [0.3, 0.107]):  # along it
+        self.refused({"a": [[0.1, 0.1], [0.9, 0.1], [0.9, 0.11], [0.1, 0.1]]}, parts, "meet at 0.716 degrees")  # closed end
+        for end in ([0.1, 0.1001], [0.2, 0.1001], [0.3, 0.107]):  # close to the first segment
             self.refused({"a": [[0.1, 0.1], [0.9, 0.1], [0.9, 0.1001], end]}, parts, "are 0.0001", " m apart at (0.", "without meeting", minimum)
         self.refused({"a": [[0.1, 0.1], [0.9, 0.1], [0.9, 0.5], [0.5, 0.5], [0.5, 0.1001]]}, parts, "are 0.0001 m apart at (0.5, 0.1001)")
 
@@ -286,7 +286,7 @@ class Refusals(unittest.TestCase):
         self.refused({"a": [[x, y, 0.5] for x, y in slit]}, parts, "are 0.0001 m apart at (0.", minimum)
 
     def test_networks_that_are_too_dense(self):
-        """Told before anything is made of them that takes minutes, or all memory."""
+        """Networks that are too dense are rejected before they need minutes or all memory."""
         import arrange
         fan = {f"f{k}": [[0.1, 0.1 + 0.01 * k], [0.9, 0.9 - 0.01 * k]] for k in range(60)}
         with mock.patch.object(arrange, "MOST_CROSSINGS", 1000):
@@ -315,7 +315,7 @@ class Refusals(unittest.TestCase):
         self.refused({"a": a, "b": a[[1, 2, 3, 0]]}, *both, "are the same")
         self.refused({"a": a, "b": a + [[0, 0, -0.005], [0, 0, 0.005], [0, 0, 0.005], [0, 0, -0.005]]}, *both, "meet at 0.955 degrees")
         self.refused({"a": a, "b": square_at(0, 0.5, 0.3, 0.7) * [1, 1, 0.5] + [0, 0, 0.35005]}, *both, "are 5e-05 m apart")
-        self.refused({"a": a, "b": [[0.80005, 0.5, 0.2], [0.80005, 0.6, 0.9], [0.9, 0.5, 0.9]]}, *both, "are 5e-05 m apart")  # edges pass
+        self.refused({"a": a, "b": [[0.80005, 0.5, 0.2], [0.80005, 0.6, 0.9], [0.9, 0.5, 0.9]]}, *both, "are 5e-05 m apart")  # edges
         self.refused({"a": square_at(2, 1.0)}, 'fracture "a" of "a": lies on side "top" of domain')
         self.refused({"a": a + [2, 0, 0]}, 'fracture "a" of "a": lies outside')
         bow = [[0.2, 0.2, 0.5], [0.8, 0.8, 0.5], [0.8, 0.2, 0.5], [0.2, 0.8, 0.5]]
@@ -338,7 +338,7 @@ class Directions(unittest.TestCase):
         self.assertTrue(np.allclose(length, [2, np.sqrt(2), 3]))
 
     def test_poles(self):
-        """A plane that strikes north dips east, its pole points down to the west."""
+        """A plane with strike north dips to the east. Its downward pole points to the west."""
         trend, radius = poles([ellipse([0, 0, 0], [2, 1], strike, dip, 20) for strike, dip in ((0, 30), (90, 60), (200, 90 - 1e-7), (50, 0))])
         self.assertTrue(np.allclose((trend[:3] - [270, 0, 110] + 180) % 360, 180), trend)
         self.assertTrue(np.allclose(radius, np.sqrt(2) * np.sin(np.radians([15, 30, 45, 0])), atol=1e-6), radius)
@@ -355,7 +355,7 @@ class Random(unittest.TestCase):
         x = self.random(SQUARE)
         length = np.linalg.norm(x[:, 1] - x[:, 0], axis=1)
         self.assertTrue(1 <= length.min() and length.max() <= 10)
-        for limit in (1.5, 3, 6):  # cumulated density
+        for limit in (1.5, 3, 6):  # cumulative distribution
             exact = (1 - limit**-1.5) / (1 - 10**-1.5)
             self.assertAlmostEqual(np.mean(length < limit), exact, delta=4 * np.sqrt(exact * (1 - exact) / len(x)))
 
@@ -367,7 +367,7 @@ class Random(unittest.TestCase):
         self.assertAlmostEqual(angle.mean(), 30, delta=0.5)
 
     def test_directions_follow_von_mises_distribution(self):
-        """The mean of the cosine of the doubled angle to the mean direction is I1(kappa) / I0(kappa)."""
+        """The mean of cos(2 angle to the mean direction) is I1(kappa) / I0(kappa)."""
         t = np.linspace(0, np.pi, 20001)
         for kappa in (0.0, 2.0, 20.0):
             x = self.random(SQUARE, concentration=kappa)
@@ -377,8 +377,8 @@ class Random(unittest.TestCase):
             self.assertAlmostEqual(cosine.mean(), mean, delta=4 * np.sqrt((square - mean**2) / len(x)))
 
     def test_poles_follow_fishers_distribution(self):
-        """The mean of the cosine of the angle to the mean pole is coth(kappa) - 1/kappa."""
-        def spread(kappa):  # of the cosine: its variance is 1/kappa^2 - 1/sinh(kappa)^2
+        """The mean cosine of the angle to the mean pole is coth(kappa) - 1/kappa."""
+        def spread(kappa):  # standard deviation of the cosine, with the variance 1/kappa^2 - 1/sinh(kappa)^2
             return np.sqrt(1 / kappa**2 - 1 / np.sinh(kappa)**2) if kappa else np.sqrt(1 / 3)
         for kappa in (0.0, 2.0, 20.0):
             x = self.random(CUBE, concentration=kappa)

@@ -42,7 +42,7 @@ class MeshTest(ProgramTest):
         return path
 
     def scene(self, name="scene.xml", dim=2, **network):
-        """A scene in the folder with one set of fractures, pressed from the top."""
+        """Writes a scene with a network under compression from the top."""
         floor, roof = ("south", "north") if dim == 2 else ("bottom", "top")
         zeros = ", ".join(["0"] * (dim - 1))
         rest = REST.replace("FLOOR", floor).replace("ROOF", roof).replace("ZERO", f"{{{zeros}, 0}}").replace("DOWN", f"{{{zeros}, -1e-3}}")
@@ -62,7 +62,7 @@ class MeshTest(ProgramTest):
         return json.loads((self.folder / f"{output}.json").read_text())
 
     def refused(self, file, *expected, kind=None, **network):
-        """Lines of the error, each of which opens as expected."""
+        """Checks the error: the number of its lines, and a text in each line."""
         described = {"file": file.name, **({"format": kind} if kind else {})}
         told = self.mesh(self.scene(fractures={"set": described}, **network), expect=1).removeprefix("sprekk: ").splitlines()
         self.assertEqual(len(told), len(expected), told)
@@ -71,7 +71,7 @@ class MeshTest(ProgramTest):
 
 
 class Files(MeshTest):
-    """What is in files; the description comes without a start of the program, as the program would print it."""
+    """Input files. A mock returns the description of the network, to avoid a start of the program."""
 
     def scene(self, **network):
         network.setdefault("domain", SQUARE)
@@ -93,14 +93,16 @@ class Files(MeshTest):
         self.assertAlmostEqual(self.report()["sets"]["set"]["length"], 1.2, 9)
 
     def singles(self, output="net.msh"):
-        """What the mesh says of its single fractures: name and entries."""
+        """Returns (name, entries) of the single fractures in the mesh file."""
         content = (self.folder / output).read_bytes()
         lines = content[content.index(b"$Fractures") : content.index(b"$EndFractures")].decode().splitlines()[2:]
         found = [line.split('"')[1::2] for line in lines]
         return [(name, dict(zip(entries[::2], entries[1::2]))) for name, *entries in found]
 
     def test_single_fractures(self):
-        """Names by a column or by the number; further columns with units; what has one name is one fracture."""
+        """Names of fractures are from a column or the number.
+
+        Other columns may have units. One name means one fracture."""
         self.write("net.csv", "name,x0,y0,x1,y1,friction coefficient,initial aperture [mm]", "A,0.2,0.5,0.4,0.5,0.4,0.1", "A,0.4,0.5,0.8,0.6,0.4,0.1",
                    "B,0.5,0.2,0.5,0.4,,", '"C, left",0.1,0.1,0.2,0.2,0.7')
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
@@ -127,8 +129,9 @@ class Files(MeshTest):
         self.assertIn(f'fracture A ({other}: line 2): has the name "A", as fracture A ({net}: line 2) of another set', told)
 
     def test_parts_of_one_fracture(self):
-        """Rows of one name or number are one fracture where they meet at their ends or along their sides, and the
-        report says so; others are refused with both places."""
+        """Rows with one name or number form one fracture if they meet at ends or along sides, as reported.
+
+        Otherwise the error names both places."""
         rows = "7,0.2,0.5,0.4,0.5", "8,0.5,0.2,0.5,0.4", "7,0.6,0.6,0.8,0.6", "7,0.4,0.5,0.6,0.6"
         self.write("net.csv", *rows)
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
@@ -140,7 +143,7 @@ class Files(MeshTest):
         apart = f'{other}: has the name "set 7", as {one}, and does not meet it; parts of one fracture meet at'
         self.write("net.csv", *rows[:3])
         self.refused(net, apart)
-        self.write("net.csv", *rows[:2], "7,0.3,0.2,0.3,0.8")  # crosses it
+        self.write("net.csv", *rows[:2], "7,0.3,0.2,0.3,0.8")  # crosses the first row
         self.refused(net, apart)
         self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5", "A,0.6,0.6,0.8,0.6")
         one, other = (f"fracture A ({net}: line {k})" for k in (2, 3))
@@ -157,7 +160,7 @@ class Files(MeshTest):
                      dim=3, **self.CUBE)
 
     def test_numbers_of_several_sources(self):
-        """Fractures at random have numbers that the file does not have; lines of a section need other names."""
+        """Random fractures have numbers that the file does not use. Lines of a section need other names."""
         self.write("net.csv", "1,0.2,0.5,0.4,0.5", "3,0.5,0.2,0.5,0.4")
         random = {"number": 2, "seed": 1, "shortest": 0.1, "longest": 0.1, "exponent": 0.0, "strike": 0.0, "dip": 90.0,
                   "concentration": 0.0, "corners": 8}
@@ -169,7 +172,7 @@ class Files(MeshTest):
         self.assertIn(f'fracture "1" of "set": has the name "set 1", as {one} of another file or section', told)
 
     def test_remarks_in_quotes(self):
-        """Columns that are no entries of a joint may hold anything; the program passes them over."""
+        """Columns that are not entries of a joint may have any content. The program ignores them."""
         titles = 'name,x0,y0,x1,y1,Remark,"the ""note"""'
         self.write("net.csv", titles, 'A,0.2,0.5,0.4,0.5,"along the ""long"" joint",b')
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
@@ -178,7 +181,7 @@ class Files(MeshTest):
         self.refused(net, "the name 'the \"A\"' has a quotation mark")
 
     def test_places_far_from_the_origin(self):
-        """Coordinates as in UTM: a place is exact to a hundredth of a metre; in a small domain, better than that."""
+        """With UTM coordinates messages give places to 0.01 m, and more precisely in a small domain."""
         utm = {"lower corner": [466000.0, 6691580.0], "upper corner": [466060.0, 6691640.0]}
         net = self.write("net.csv", "1,466010,6691590,466050,6691600", "2,466020,6691630,466030.001,6691595.0043")
         self.refused(net, "apart at (466030.002, 6691595) without meeting", domain=utm)
@@ -191,7 +194,7 @@ class Files(MeshTest):
         self.refused(net, "a domain from (6691580.25, 0, 0) to (6691581.25, 1, 1), the scene's", dim=3, **self.CUBE)
 
     def test_huge_coordinates(self):
-        """One error with the place, and no warnings of numpy."""
+        """Huge coordinates give one error with the place, and no warnings of numpy."""
         net = self.write("net.csv", "1,0.2,0.5,0.4,0.5", "2,0.5,0.2,1e300,0.4")
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -233,14 +236,14 @@ class Files(MeshTest):
                    "   3 0.5 0.8 0.8", "   4 0.4 0.2 0.8", "   1 2 3", "   1 3 4", "END TESSFRACTURE")
 
     def test_tessellated_fab(self):
-        """The triangles of a tessellated fracture are one fracture."""
+        """The triangles of a tessellated fracture form one fracture."""
         self.write("net.fab", *self.TESSELLATED)
         self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.fab"}}, **self.CUBE))
         other = 0.5 * np.linalg.norm(np.cross([0, 0.6, 0.6], [-0.1, 0, 0.6]))
         self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.18 + other, 9)
         self.assertEqual(self.report()["sets"]["set"]["fractures"], 1)
         self.assertEqual(self.singles(), [("set 2", {})])
-        corners = "0 0.2 0.2 0.5", "1 0.8 0.2 0.5", "2 0.8 0.8 0.5", "3 0.2 0.8 0.5"  # as PorePy numbers them
+        corners = "0 0.2 0.2 0.5", "1 0.8 0.2 0.5", "2 0.8 0.8 0.5", "3 0.2 0.8 0.5"  # numbers as in files of PorePy
         self.write("net.fab", "BEGIN FRACTURE", "0 4 1", *corners, "0 -1 -1 -1", "END FRACTURE")
         self.mesh(self.scene(dim=3, fractures={"set": {"file": "net.fab"}}, **self.CUBE))
         self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.36, 9)
@@ -295,7 +298,7 @@ class Files(MeshTest):
         return self.report()["sets"]["set"]["length"]
 
     def test_titles_decide(self):
-        """Columns are found by their titles, in any order; without titles they have the order of the documentation."""
+        """Titles determine the columns in any order. Without titles the order is that of the documentation."""
         wanted = np.hypot(0.6, 0.1) + np.hypot(0.3, 0.2)
         for rows in (("x0,x1,y0,y1", "0.2,0.8,0.1,0.2", "0.2,0.5,0.5,0.7"),
                      ("x0,y0,x1,y1,id", "0.2,0.1,0.8,0.2,1", "0.2,0.5,0.5,0.7,2"),
@@ -341,7 +344,7 @@ class Files(MeshTest):
         self.assertAlmostEqual(self.report()["sets"]["set"]["length"], 0.6, 9)
 
     def test_other_numbers_and_separators(self):
-        """Rows of numbers between anything but commas do not pass for titles, nor for other errors."""
+        """Rows with other separators than commas are not taken for titles, and give one clear error."""
         net = self.write("net.csv", "1,0.2,0.5,0.8,1_0")
         self.refused(net, f'{net}: line 1: "1_0" in column 5 is no number')
         rows = (("semicolons", "1;0.2;0.5;0.8;0.5"), ("semicolons", "1;0,2;0,5;0,8;0,5"), ("tabs", "1\t0.2\t0.5\t0.8\t0.5"),
@@ -456,7 +459,7 @@ class Runs(MeshTest):
             self.assertIn("cells", self.mesh(scene))
 
     def test_output_that_cannot_be_written(self):
-        """One line without Python's words, and nothing left beside it."""
+        """An unwritable output gives one line without a Python traceback, and leaves no files."""
         (self.folder / "net.msh").mkdir()
         told = self.mesh(self.simple(), expect=1)
         self.assertRegex(told, r"^sprekk: .*scene.xml: .*net.msh.*: Is a directory\n$")
@@ -471,7 +474,7 @@ class Runs(MeshTest):
             self.assertEqual(list(self.folder.glob("full.msh*")), [])
 
     def test_absurd_sizes_are_refused(self):
-        """Before anything is made of them, and with the entry that causes it; the limit can be set."""
+        """Sizes with too many cells are rejected before meshing. The error names the entry; the limit is adjustable."""
         self.write("net.csv", *self.LINES)
         for entry, value in (("relative size", 1e-9), ("size", 1e-6), ("size at boundary", 1e-6), ("growth", 1e-9), ("size at tips", 2e-7)):
             scene = self.scene(fractures={"set": {"file": "net.csv"}}, **{"relative_size": 0.2, "growth": 1e-4 if "tips" in entry else 0.5, entry.replace(" ", "_"): value})
@@ -496,7 +499,7 @@ class Runs(MeshTest):
             self.assertTrue(0.4 < ratio < 2.5, ratio)
 
     def test_fractures_at_random_that_cannot_be_meshed_are_drawn_again(self):
-        """The others stay where they are; those of a file are no one's to draw."""
+        """Only random fractures that cannot be meshed are drawn again. Fractures of a file never are."""
         random = {"number": 30, "seed": 1, "shortest": 0.1, "longest": 0.5}
         dense = {"tolerance": 1e-6, "minimum_distance": 0.003}
         self.mesh(self.scene(fractures={"set": {"random": random}}, **dense))
@@ -514,13 +517,13 @@ class Runs(MeshTest):
         self.assertIn("length 1.2", info)
         self.assertTrue(0.3 < report["gamma"]["min"] <= report["gamma"]["median"] <= 1)
         for rows in (self.LINES, ("1,0.2,0.2,0.5,0.5", "2,0.5,0.5,0.8,0.2"), ("1,0.2,0.2,0.5,0.5", "2,0.5,0.5,0.8,0.2", "3,0.5,0.5,0.5,0.9")):
-            self.write("net.csv", *rows)  # an X, two that meet at their ends, three
+            self.write("net.csv", *rows)  # an X, two lines and three lines with common ends
             self.mesh(self.folder / "scene.xml")
             self.assertIn(f"intersections {self.report()['intersections']} points", self.call("mesh-info", "net.msh", "--fractures", "set")[0])
         self.assertTrue(0 < report["sets"]["set"]["median edge"] <= 1.5 * report["sets"]["set"]["median size asked for"])
 
     def launch(self, *words, expect=0):
-        """The launcher, of which building is left out."""
+        """Runs the launcher without builds."""
         launcher = self.folder / "sprekk"
         text = (ROOT / "sprekk").read_text().replace("\nbuild() {\n", "\nbuild() { return\n").replace("\ninstall_missing() {\n", "\ninstall_missing() { return\n")
         launcher.write_text(text)
@@ -550,8 +553,8 @@ class Runs(MeshTest):
         self.launch("run", "again/effective_input.xml", "--output", "once more")
 
     def quarter_points(self, *words):
-        """Ends of the edges whose node is at a quarter of them, the nearer end first; of a run at order 2."""
-        import read  # of apps/plot
+        """Returns the ends of edges with a node at a quarter, nearer end first, of a run at order 2."""
+        import read  # from apps/plot
         self.call("run", "scene.xml", "--output", "out", "--set", "Mesh file.path=net.msh", "--set", "Mesh file.order=2", *words)
         rock = read.grid(self.folder / "out/bulk_0000.pvtu")
         x, cells = read.vtk_to_numpy(rock.GetPoints().GetData()), np.array(read.cells(rock.GetCells()))

@@ -1,4 +1,4 @@
-"""The package sprekk on one rank: alone_test.py ROOT PROGRAM"""
+"""Python package on one rank: alone_test.py ROOT PROGRAM"""
 import os
 import resource
 import subprocess
@@ -18,7 +18,7 @@ CYCLES = ROOT / "xml/point/cyclic_shear.xml"
 
 
 def script(text, expect=0):
-    """Standard output and error of Python in a process of its own."""
+    """Returns standard output and error of Python code in a separate process."""
     done = subprocess.run([sys.executable, "-B", "-c", text], capture_output=True, text=True, stdin=subprocess.DEVNULL)
     assert done.returncode == expect, f"status {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout, done.stderr
@@ -47,7 +47,7 @@ class Scenes(unittest.TestCase):
                 self.assertEqual(scene.to_xml(defaults=True), again.to_xml(defaults=True))
 
     def test_traces_of_one_name(self):
-        """No trace takes the place of another."""
+        """Traces with equal names are an error."""
         table = {"geometry": [[[0, 0], [1, 1]], [[0, 1], [1, 0]], [[0, 2], [1, 2]]], "id": [7, 8, 7]}
         self.assertEqual(list(sprekk.traces(table)["lines"]), ["1", "2", "3"])
         with self.assertRaisesRegex(sprekk.Error, 'rows 0 and 2, counted from 0 on, have the same name, "7"'):
@@ -118,7 +118,7 @@ class Folders(unittest.TestCase):
 
 class Processes(unittest.TestCase):
     def test_ends_well_whatever_is_alive(self):
-        """Models, arrays, checkpoints and exceptions at the end of the interpreter."""
+        """The interpreter ends without errors while models, arrays, checkpoints and exceptions exist."""
         _, err = script(f"""
 import sprekk
 model = sprekk.Model(sprekk.Scene({str(PUSH)!r}))
@@ -185,7 +185,7 @@ print(model.time)
                 sizes.append(resident())
         model.run(watch)
         self.assertEqual(len(sizes), 4)
-        self.assertLess(sizes[-1] - sizes[1], 2 * 2**20)  # bytes in the last 5000 steps
+        self.assertLess(sizes[-1] - sizes[1], 2 * 2**20)  # growth in bytes during the last 5000 steps
 
     def test_models_that_end_leave_nothing(self):
         scene, sizes = sprekk.Scene(PUSH), []
@@ -199,7 +199,7 @@ print(model.time)
 
 
 def resident():
-    """Bytes of memory."""
+    """Returns the resident memory in bytes."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * resource.getpagesize()
 
@@ -253,7 +253,7 @@ class Points(unittest.TestCase):
 
 class Threads(unittest.TestCase):
     def test_models_in_threads_take_turns(self):
-        """Each with a callback, which has the interpreter while others wait: the result is that of a model alone."""
+        """Models in threads take turns, also in callbacks. The result is that of a single model."""
         def work(found):
             model = sprekk.Model(sprekk.Scene(PUSH, {"Time.steps": 4}))
             model.run(lambda model, step: {"slip": float(np.max(model.output("slip")))})
@@ -289,7 +289,7 @@ class Wrong(unittest.TestCase):
 
 
 def opening(model):
-    """What a sweep measures."""
+    """Returns the values measured in a sweep."""
     return {"slip": float(np.max(model.output("slip"))), "process": os.getpid()}
 
 
@@ -301,7 +301,7 @@ class Sweeps(unittest.TestCase):
             table = sprekk.sweep(PUSH, {name: [0.1, 0.5], "Time.steps": [1, 2]}, measure, processes=2, folder=folder)
             self.assertEqual(list(table[name]), [0.1, 0.1, 0.5, 0.5])
             again = sprekk.sweep(PUSH, {name: [0.1, 0.5, -1]}, measure, processes=2, folder=folder)
-        self.assertEqual(list(again["process"][:2]), list(table["process"][::2]))  # these were not run again
+        self.assertEqual(list(again["process"][:2]), list(table["process"][::2]))  # not run again
         self.assertIn("must be at least 0", again["error"][2])
         self.assertEqual(len(set(table["process"])), 4)
         alone = sprekk.Model(sprekk.Scene(PUSH, {name: 0.1}))

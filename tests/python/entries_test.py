@@ -1,4 +1,4 @@
-"""Scenes as typed objects: entries_test.py ROOT PROGRAM"""
+"""Typed scenes: entries_test.py ROOT PROGRAM"""
 import inspect
 import re
 import subprocess

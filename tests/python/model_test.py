@@ -1,6 +1,6 @@
 """Models from Python on any number of ranks: model_test.py ROOT
 
-A block of 1 m with a joint, as in apps/hosts/time_loop.cpp: pressed down until t = 1, then moved sideways."""
+The scene is that of apps/hosts/time_loop.cpp: a block of 1 m with a joint, compressed until t = 1, then sheared."""
 import gc
 import sys
 import tempfile
@@ -39,7 +39,7 @@ class Block(unittest.TestCase):
         self.model = sprekk.Model(sprekk.Scene(BLOCK))
 
     def below(self, tau):
-        """The error of the displacement below the joint, where u = (tau y/G, -compression y)."""
+        """Returns the error of the displacement below the joint, with the solution u = (tau y/G, -compression y)."""
         n = self.model.mesh.n_owned_nodes
         x, u = self.model.mesh.coordinates[:n], np.asarray(self.model.field("displacement"))
         low = x[:, 1] < 0.5
@@ -47,7 +47,7 @@ class Block(unittest.TestCase):
         return largest((u - exact)[low])
 
     def test_time_loop_of_its_own(self):
-        """As the C++ host: when the joint slides, a slip that is given, and a weaker joint, by hand."""
+        """Compares with a solution by hand, as in the C++ host: slip onset, a prescribed slip, and a weaker joint."""
         model = self.model
         model.step(1)
         dt = 1.0
@@ -73,7 +73,7 @@ class Block(unittest.TestCase):
         if one.size:
             self.assertTrue(np.shares_memory(one, two))
         self.model.step(1)
-        self.assertGreater(largest(one), 0)  # seen without asking again
+        self.assertGreater(largest(one), 0)  # updated without a new call of field()
         np.testing.assert_array_equal(np.asarray(one), np.asarray(two))
         self.assertIs(type(one + 1), np.ndarray)
         self.assertAlmostEqual(COMM.allreduce(float(np.min(one, initial=0)), MPI.MIN), -COMPRESSION)
@@ -136,7 +136,7 @@ class Block(unittest.TestCase):
         table = self.model.run(lambda model, step: seen.append(model.time) or {"slip": largest(model.output("slip"))})
         self.assertEqual(seen, [0.5, 1, 1.5, 2])
         self.assertEqual(list(table["time"]), seen)
-        elastic = MU * E * COMPRESSION / K_T  # of the joint, by which slip is less than what is moved
+        elastic = MU * E * COMPRESSION / K_T  # elastic jump of the joint, which reduces the slip
         slid = 1e-3 - 2 / E * MU * E * COMPRESSION - elastic
         self.assertAlmostEqual(table["slip"].iloc[-1], max(slid, 0), delta=1e-12)
 
@@ -187,7 +187,7 @@ class Block(unittest.TestCase):
 
     def test_fractures_and_reactions(self):
         self.model.step(1)
-        self.model.step(1 + 1e3 * MU * E * COMPRESSION * COMPLIANCE / 2)  # it sticks
+        self.model.step(1 + 1e3 * MU * E * COMPRESSION * COMPLIANCE / 2)  # the joint sticks
         table = self.model.fractures()
         self.assertEqual(list(table.index), ["joint"])
         self.assertAlmostEqual(table.loc["joint", "area"], 1)
@@ -198,7 +198,7 @@ class Block(unittest.TestCase):
         np.testing.assert_allclose(forces["top"]["displacement"], -forces["floor"]["displacement"], rtol=1e-9)
 
     def test_ranks_of_a_part(self):
-        """A model on the ranks that a communicator has, others do something else."""
+        """A model on half of the ranks, while the others run a separate model."""
         half = COMM.Split(COMM.rank % 2)
         model = sprekk.Model(sprekk.Scene(BLOCK, comm=half), half)
         model.step(1)
@@ -215,7 +215,7 @@ class Block(unittest.TestCase):
 
 @unittest.skipIf(COMM.size == 1, "on one rank nothing differs")
 class Ranks(unittest.TestCase):
-    """What differs between ranks is an Error on all of them, and none waits for another."""
+    """Differences between ranks raise an Error on all ranks, without a deadlock."""
 
     def refuse(self, words, act):
         with self.assertRaisesRegex(sprekk.Error, words):

@@ -1,4 +1,4 @@
-"""Own time loops, modules and laws, and derivatives, on any number of ranks: modules_test.py ROOT"""
+"""User-defined time loops, modules, laws, and derivatives on any number of ranks: modules_test.py ROOT"""
 import json
 import sys
 import tempfile
@@ -19,7 +19,7 @@ E = 10e9  # Pa
 
 
 def square(friction, **time):
-    """A square under an inclined load, with a fracture inside, parts of which slide."""
+    """Returns the scene of a square under inclined load, with a partly sliding fracture inside."""
     return sprekk.Scene({
         "Mesh": {"cell": "triangle", "lower corner": [0, 0], "upper corner": [1, 1], "cells": [8, 8],
                  "fractures": {"fracture": {"lower corner": [0.25, 0.5], "upper corner": [0.75, 0.5]}}},
@@ -32,7 +32,7 @@ def square(friction, **time):
 
 
 class Viscous(sprekk.FaceLaw):
-    """As slow as the viscosity (Pa s/m) lets it."""
+    """Linear viscous shear traction, with the viscosity in Pa s/m."""
     name = "viscous joint"
 
     def __init__(self, viscosity):
@@ -70,7 +70,7 @@ class Coupled(unittest.TestCase):
 
 class Laws(unittest.TestCase):
     def test_viscous_joint_beside_rock_by_hand(self):
-        """A block whose top is moved by d: tau (2(1 + nu)/E + dt/viscosity) = d - jump of the last step."""
+        """Solution for a block with top displacement d: tau (2(1 + nu)/E + dt/viscosity) = d - previous jump."""
         viscosity, nu, dt = 1e12, 0.2, 0.5
         entries = square(0, steps=4).entries
         scene = sprekk.Scene(entries | {"Mesh": entries["Mesh"] | {
@@ -97,7 +97,7 @@ class Laws(unittest.TestCase):
                 np.testing.assert_allclose(whole, known, atol=1e-9 * np.max(np.abs(known)), err_msg=name)
 
     def test_outputs_have_what_a_law_bears(self):
-        """In results.json, the files of fractures, the table of fractures and outputs, as the joint's own traction."""
+        """results.json, fracture files, tables and outputs contain the shear traction of a FaceLaw."""
         model = sprekk.Model(square(0), modules=[Viscous(1e11)])
         with tempfile.TemporaryDirectory() as scratch:
             folder = COMM.bcast(scratch)
@@ -154,7 +154,7 @@ class Laws(unittest.TestCase):
 
 class Derivatives(unittest.TestCase):
     def test_adjoint_against_differences_of_solves(self):
-        """Materials, loads and friction, where parts of the fracture slide in the step and parts stick."""
+        """Derivatives by materials, loads and friction, for a fracture with sliding and sticking parts."""
         parameters = {"Materials.rock.Young's modulus": E, "Materials.joint.tangential stiffness": 50e9,
                       "Materials.joint.friction coefficient": 0.38, ("Boundary conditions.top.traction", 0): 4e6,
                       ("Boundary conditions.top.traction", 1): -1e7}
@@ -174,13 +174,13 @@ class Derivatives(unittest.TestCase):
         model.step(1)
         _, found = sprekk.sensitivities(model, 2, self.quantity, ["Materials.rock.Young's modulus"])
         ends = []
-        for sign in (1, -1):  # the state at the beginning of the step is given
+        for sign in (1, -1):  # with the same state at the beginning of the step
             other = sprekk.Model(scene.changed({"Materials.rock.Young's modulus": E * (1 + sign * 1e-4)}), modules=law)
             first = sprekk.Model(scene, modules=law)
             first.step(1)
             for name in first.fields:
                 other.field(name)[:] = first.field(name)
-            other.step(1)  # as long as the second step
+            other.step(1)  # same length as the second step
             ends.append(self.told(other))
         self.assertAlmostEqual(found["Materials.rock.Young's modulus"] / ((ends[0] - ends[1]) / (2e-4 * E)), 1, delta=1e-6)
 

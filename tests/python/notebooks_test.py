@@ -1,6 +1,6 @@
-"""The notebooks and the page on Python: notebooks_test.py ROOT PROGRAM
+"""Notebooks and the page on Python: notebooks_test.py ROOT PROGRAM
 
-Every notebook runs to its end, where assertions in it hold, and so does the Python of docs/use/python.md, block after block."""
+Runs each notebook, with its assertions, and the Python blocks of docs/use/python.md in their order."""
 import os
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""A page in headless Chromium, driven through the pipe of its DevTools protocol."""
+"""Headless Chromium with one page, controlled through the pipe of its DevTools protocol."""
 import base64
 import json
 import os
@@ -10,23 +10,23 @@ import tempfile
 import time
 
 NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
-PATIENCE = 120  # seconds for one answer; a busy machine draws slowly, as it has no graphics card
+PATIENCE = 120  # seconds for one reply; drawing is slow without a graphics card
 
 
 def program():
-    """The browser, or None."""
+    """Returns the path of the browser, or None."""
     return next(filter(None, map(shutil.which, NAMES)), None)
 
 
 class Browser:
-    """With one page; .complaints are what it wrote into its console but for information."""
+    """Browser with one page. `complaints` are messages in its console above the level of information."""
 
     def __init__(self):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_browser, own_out = os.pipe()
         own_in, from_browser = os.pipe()
 
-        def pipes():  # the protocol wants them at 3 and 4
+        def pipes():  # the protocol uses the file descriptors 3 and 4
             os.setpgrp()
             high = [os.dup2(end, fd) for end, fd in ((to_browser, 30), (from_browser, 31))]
             os.dup2(high[0], 3)
@@ -114,7 +114,7 @@ class Browser:
         return answer["result"].get("value")
 
     def picture(self, selector=None):
-        """A PNG of an element, or of what the window shows."""
+        """Returns a PNG of an element or of the visible page."""
         options = {}
         if selector:
             self.value(f"document.querySelector({selector!r}).scrollIntoView()")
@@ -128,7 +128,7 @@ class Browser:
         return base64.b64decode(self.call("Page.captureScreenshot", format="png", **options)["data"])
 
     def drag(self, selector, dx, dy):
-        """The mouse from the middle of an element, with its button held."""
+        """Drags the mouse from the centre of an element."""
         self.value(f"document.querySelector({selector!r}).scrollIntoView()")
         x, y = self.value(
             f"(b => [b.x + b.width / 2, b.y + b.height / 2])(document.querySelector({selector!r}).getBoundingClientRect())"
@@ -145,11 +145,11 @@ class Browser:
             )
 
     def paper(self):
-        """A PDF as the page is printed."""
+        """Returns a PDF of the printed page."""
         return base64.b64decode(self.call("Page.printToPDF", printBackground=True)["data"])
 
     def close(self):
-        os.killpg(self.process.pid, signal.SIGKILL)  # with its children
+        os.killpg(self.process.pid, signal.SIGKILL)  # includes child processes
         self.process.wait()
         self.profile.cleanup()
         os.close(self.write)

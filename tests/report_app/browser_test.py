@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Reports as a browser shows them: browser_test.py PROGRAM ROOT MPIEXEC
+"""Reports in a browser: browser_test.py PROGRAM ROOT MPIEXEC
 
-Needs Chromium, npm, which brings the view's library once, and what pictures need; where one is missing it ends with
-status 77, which ctest shows as skipped."""
+Requires Chromium, npm, which downloads the library of the view once, and the modules for pictures. If one is missing,
+the status is 77, for ctest's "skipped"."""
 import io
 import shutil
 import subprocess
@@ -48,7 +48,7 @@ class BrowserTest(ProgramTest):
         return (imread(io.BytesIO(png), format="png")[:, :, :3] * 255).astype(int)
 
     def colours(self, png):
-        """How many there are, of at least ten pixels each."""
+        """Returns the number of colours with at least ten pixels."""
         import numpy as np
 
         return int(np.sum(np.unique(self.image(png).reshape(-1, 3) @ (1, 256, 256**2), return_counts=True)[1] >= 10))
@@ -61,7 +61,7 @@ class BrowserTest(ProgramTest):
         )
 
     def expect_view(self, file):
-        """It shows the run, turns with the mouse, and changes its colours with the field."""
+        """Checks that the 3D view shows the run, turns with the mouse, and changes its colours with the field."""
         self.browser.open(file)
         self.expect_quiet()
         first = self.browser.picture("#view canvas")
@@ -79,7 +79,7 @@ class BrowserTest(ProgramTest):
         self.expect_quiet()
 
     def expect_fits(self, file):
-        """A phone needs no scrolling sideways; paper has pages."""
+        """Checks that a phone needs no horizontal scrolling, and that a printout has several pages."""
         self.browser.open(file, 390, 844, mobile=True)
         self.expect_quiet()
         self.assertLessEqual(self.browser.value("document.documentElement.scrollWidth"), 390)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What a report says: report_test.py PROGRAM ROOT MPIEXEC
+"""Content of reports: report_test.py PROGRAM ROOT MPIEXEC
 
-Needs matplotlib, numpy and VTK's Python; without them it ends with status 77, which ctest shows as skipped."""
+Requires matplotlib, numpy and VTK's Python. If one is missing, the status is 77, for ctest's "skipped"."""
 import base64
 import contextlib
 import importlib.util
@@ -44,7 +44,7 @@ class ReportTest(ProgramTest):
         return out.getvalue().strip() or err.getvalue()
 
     def verdicts(self):
-        """Of the run as its files are now, by the name of the check."""
+        """Returns {name: check} of the present files of the run."""
         content = self.results()
         entries = scene.Scene(self.folder / "out", ROOT / "docs/use/reference.md")
         return {check.name: check for check in checks.of_run(self.folder / "out", content, entries)}
@@ -57,7 +57,7 @@ class ReportTest(ProgramTest):
 
 class Pages(ReportTest):
     def test_page_holds_all_there_is(self):
-        """Without a viewer: everything but the view, which it says; nothing is loaded from elsewhere."""
+        """Without a viewer the page contains everything except the view, with a note, and no external references."""
         content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=8", "Output.error estimate=true")
         page = Path(self.write()).read_text()
         self.assertIn("has no 3D view", page)
@@ -75,14 +75,14 @@ class Pages(ReportTest):
             self.assertIn(words, page)
 
     def test_scene_in_words(self):
-        """What is no default, with units; sections that say the same are one."""
+        """The scene lists entries that differ from defaults, with units. Sections with equal entries are merged."""
         self.run_scene("poro/injection_2d.xml", "Time.steps=1", "Time.end=100")
         entries = scene.Scene(self.folder / "out", ROOT / "docs/use/reference.md")
         blocks = {path[:-1] + (", ".join(names),): dict(said) for names, path, said in entries.blocks()}
         self.assertEqual(blocks["Materials", "granite"]["Young's modulus"], "40 GPa")
         self.assertEqual(blocks["Materials", "rough joint"]["tangential stiffness"], "10 GPa/m")
         self.assertEqual(blocks["Bulk",]["initial stress"], "(−25, −40, −30, 6) MPa")
-        self.assertNotIn("skin", blocks["Flow", "Wells", "injector"])  # a default
+        self.assertNotIn("skin", blocks["Flow", "Wells", "injector"])  # has the default value
         joined = [path for path in blocks if path[0] == "Fractures"]
         self.assertEqual([path[1].count(",") for path in joined], [10])
 
@@ -105,7 +105,7 @@ class Pages(ReportTest):
         self.assertFalse((self.folder / "absent").exists())
 
     def test_damaged_files(self):
-        """One error that names the file, and no report."""
+        """A damaged file gives one error with its name, and no report."""
         self.run_scene("seed/push_2d.xml")
         piece = self.folder / "out/fractures/fractures_0000_0_0.vtu"
         piece.write_bytes(piece.read_bytes()[:1000])
@@ -128,7 +128,7 @@ class Checks(ReportTest):
         self.assertIn(f"{numbers_in_words.number(stored)} m²/s, is stored", found["balance of fluid"].words)
 
     def test_rates_per_depth(self):
-        """Of a plane scene in m^2/s and W/m: checks, tables and the scene in words; of a body in m^3/s and W."""
+        """Rates of a 2D scene are in m^2/s and W/m in checks, tables and scene; in 3D in m^3/s and W."""
         self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
         page = Path(self.write()).read_text()
         self.assertIn("rate (m²/s)", page)
@@ -146,7 +146,7 @@ class Checks(ReportTest):
             self.assertEqual(table.columns[1], f"rate ({numbers_in_words.RATES['fluid'][dim == 2]})")
 
     def test_stages(self):
-        """Faces are excavated and joints weaken: a report is written, laws are not judged by those of the start."""
+        """With excavated faces and weaker joints the report does not check the contact laws."""
         content = self.run_scene("stages/gallery_2d.xml")
         self.assertEqual(content["status"], "completed")
         self.assertIn("not judged: the scene has stages", Path(self.write()).read_text())
@@ -181,10 +181,10 @@ class Checks(ReportTest):
         self.assertEqual(self.verdicts()["laws of contact and friction"].verdict, "failed")
 
     def test_joints_of_their_own_are_judged(self):
-        """Traces with entries from a table: the state obeys them, and would not if they were others."""
+        """The check of contact laws uses the own entries of single fractures."""
         mapped, mesh = self.scene("networks/mapped_2d.xml"), self.folder / "n.msh"
         mesher = [sys.executable, "-B", ROOT / "apps/mesh", mapped, "-o", mesh, "--program", PROGRAM, "--quiet"]
-        subprocess.run(mesher, check=True)  # whose modules have names of those here
+        subprocess.run(mesher, check=True)  # separate process: equal names of modules
         self.run_scene(mapped, f"Mesh file.path={mesh}")
         name = "laws of contact and friction"
         self.assertEqual(self.verdicts()[name].verdict, "passed", self.verdicts()[name])
@@ -216,7 +216,7 @@ class Views(ReportTest):
         return np.frombuffer(base64.b64decode(text), dtype=kind)
 
     def test_body(self):
-        """Values and places are those of the run's files."""
+        """Values and positions of the view are those of the files."""
         self.run_scene("verification/crossing_3d.xml")
         shown = view.of_run(self.folder / "out")
         rock, joints = shown["surfaces"]
@@ -236,7 +236,7 @@ class Views(ReportTest):
         self.assertGreater(np.max(abs(displacement)), 0)
 
     def test_plane(self):
-        """Traces are bands that keep their length, in front of the rock."""
+        """In 2D traces are bands of the same length, in front of the rock."""
         self.run_scene("verification/crossing_2d.xml")
         rock, joints = view.of_run(self.folder / "out")["surfaces"]
         self.assertEqual(rock["opacity"], 1)
@@ -250,7 +250,7 @@ class Views(ReportTest):
         self.assertTrue(np.allclose(np.linalg.norm(bands[:, 1] - bands[:, 0], axis=1), lengths, rtol=1e-5))
 
     def test_large_surfaces_are_thinned(self):
-        """A wavy sheet: fewer triangles, about where it was, with the values of its points."""
+        """A wavy surface has fewer triangles at almost the same place, with the values of its points."""
         n = 300
         x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n))
         points = np.column_stack([x.ravel(), y.ravel(), 0.1 * np.sin(6 * x.ravel())])
@@ -275,7 +275,7 @@ class Words(ReportTest):
         self.assertEqual(numbers_in_words.in_unit("{0, ramp(t)}", "m"), "{0, ramp(t)} m")
 
     def test_single_fractures_take_the_place_of_sets(self):
-        """Those that slipped most first."""
+        """Fractures are sorted by slip."""
         step = {
             "fractures": {"set": {"area": 3.0, "max_slip": 2e-3}},
             "single_fractures": {"max_slip": [1e-3, 2e-3], "moment": [0.0, 5e9]},

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Counts features of hard prose in all Markdown pages that git tracks.
+"""Measures the readability of all Markdown pages in the repository.
 
     check_prose.py ROOT [--pages]     exit status 1 if a bound is exceeded; --pages prints the counts of each page
 
-Bounds over all pages: "what" per 10,000 words, relative and demonstrative words per 100 words, the 90th percentile of the
-words of a sentence, and the share of sentences with more than 40 words. No line of prose has more than 120 characters;
-tables and quoted code may. The counts do not show that a page reads well. Read it aloud.
-"""
+The bounds apply to all pages together: "what" per 10,000 words, relative and demonstrative words per 100 words, the
+90th percentile of words per sentence, and the share of sentences with more than 40 words. Lines of prose have at most
+120 characters, except tables and quoted code. Good counts do not prove that a page reads well. Read it aloud."""
 import re
 import subprocess
 import sys
@@ -17,7 +16,7 @@ RELATIVE = {"what", "whatever", "which", "whichever", "that", "those", "such", "
 
 
 def sentences(text):
-    """[sentence] [word]; without code, tables, headings, formulas and targets of links."""
+    """Returns the words of each sentence, without code, tables, headings, formulas and targets of links."""
     text = re.sub(r"<!--.*?-->|```.*?```|\$\$.*?\$\$", "", text, flags=re.DOTALL)
     text = re.sub(r"\$[^$\n]*\$|`[^`\n]*`", "X", text)
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", text)

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Checks the rules of the house that can be read off the sources.
+"""Checks the rules of the sources.
 
-    check_rules.py ROOT     prints "file:line: [rule] what" for every violation; exit status 1 if there is any
+    check_rules.py ROOT     prints "file:line: [rule] message" for every violation; exit status 1 if there is any
 
 Rules: include-order, solver-header, host-only, kernel, unfinished, self-contained, static-state, generic-room,
-heat-room, trilinos-names, compiler, functor, lambda, host-read, host-pointer.
-"""
+heat-room, trilinos-names, compiler, functor, lambda, host-read, host-pointer."""
 import re
 import sys
 from pathlib import Path
@@ -23,18 +22,18 @@ USES = {
     "io": "base mesh fields",
     "model": "base laws mesh fields contact assembly physics multigrid solve io",
 }
-FOLDERS = ["packages", "apps", "tests", "xml", "perf", "docs", "cmake", ".ci"]  # and the files beside them
+FOLDERS = ["packages", "apps", "tests", "xml", "perf", "docs", "cmake", ".ci"]  # and the files in the root folder
 SOURCES = {".hpp", ".cpp", ".h"}
 
 SOLVER_HEADER = re.compile(r'\s*#\s*include\s*[<"]((?:NOX|Stratimikos|Belos|Teko|MueLu|Amesos2)[^>"]*)')
 HOST_ONLY = re.compile(
     r"\bMPI_COMM_WORLD\b|\bgetDefaultComm\b|\bMPI_Init\w*|\bKokkos::initialize\b|\b_?[eE]xit\s*\(|\babort\s*\(|\bstd::abort\b")
-# Names that later versions of Trilinos and Kokkos have not.
+# Names that later versions of Trilinos and Kokkos do not have.
 OLD_TRILINOS = re.compile(r"\bgetNode(?:Num\w+|ElementList)\b|\bKokkos::Experimental::\w+|\bgetLocalMatrix\s*\(")
 TRILINOS_COMPAT = "packages/base/trilinos_compat.hpp"  # and its test
 
-# Rooms that know no physics, by the words of those there are; the law of a room may be broken in these files: where
-# assembly meets contact, the point driver and the error estimate, which wait for rooms of their own.
+# Packages independent of the physics, checked by words of the present physics. The second expression lists exceptions:
+# coupling of assembly and contact, point driver and error estimate.
 GENERIC = {"base", "mesh", "fields", "assembly", "multigrid", "solve", "io", "model"}
 PHYSICS = re.compile(
     r"\b(?:pressures?|fluids?|tractions?|friction|temperatures?|heat|dilation|apertures?|biot|permeability|porosity"
@@ -42,7 +41,7 @@ PHYSICS = re.compile(
 NOT_YET_GENERIC = re.compile(
     r"packages/(?:assembly/(?:free_motion|module|system(?:_\w+)?)\.[ch]pp"
     r"|model/(?:accuracy|goals|point|point_driver|error_estimate)\.[ch]pp|fields/block_problem\.hpp|solve/picard\.[ch]pp|mesh/mesh_info\.cpp)")
-# The latest physics: none but its room and the list know it.
+# Words of heat, allowed only in its package and in the list of physics.
 HEAT = re.compile(r"heat|temperature", re.IGNORECASE)
 HEAT_ROOM = re.compile(r"packages/physics/(?:heat/|list\.hpp)")
 
@@ -50,20 +49,20 @@ NOT_IN_KERNELS = re.compile(
     r"\bstd::(?:vector|map|unordered_map|set|string|cout|cerr|function)\b|\bnew\b|\b(?:malloc|printf)\s*\("
     r"|(?:\.|->)data\s*\(\s*\)|\bthrow\b|\bSPREKK_(?:DEBUG_)?CHECK\b|\bfmt::|\bTeuchos::"
     r"|\b(?:create_mirror\w*|deep_copy|getLocalView\w*)\b")
-# Rooms whose kernels must compile for a GPU, see tests/device; the rest is code of the host, or says that it is.
+# Packages whose kernels must compile for a GPU, see tests/device. Other code is host code or declares it.
 ON_DEVICE = {"laws", "physics", "assembly"}
-# What compilers have in their own ways, and the files that have it.
+# Extensions of compilers, and the files that may use them.
 COMPILERS = re.compile(r"\b__(?:builtin_\w+|attribute__|declspec)\b|\b_mm\d*_\w+")
 KNOW_COMPILERS = {"packages/fields/node_kernels.hpp", "packages/multigrid/rounded_matrix.hpp",
                   "packages/solve/condensed_block.cpp"}
 FUNCTOR = re.compile(r"\boperator\s*\(\)\s*\(\s*(?:const\s+)?(?:int|LocalIndex|std::size_t)\b[^)]*\)\s*const")
-# A view of the device, or, in the group, one that says where it is.
+# View in device memory. The group matches an explicit memory space.
 DEVICE_VIEW = re.compile(r"\b(Kokkos::)?(?:Const)?View<")
 UNFINISHED = re.compile(r"\b(?:TOD[O]|FIXM[E]|XX[X]|HAC[K])\b")
 NOT_SELF_CONTAINED = re.compile(r"/wor[k]/|\b[s]essions?\b|\b[i]ssue #", re.IGNORECASE)
 KERNEL_MACRO = r"KOKKOS_(?:CLASS_)?LAMBDA|KOKKOS_(?:FORCE)?(?:INLINE_)?FUNCTION"
 
-# Variables that outlive a call: at column 0 (a namespace's content is not indented), or static at any depth.
+# Variables with static lifetime: at column 0 (contents of namespaces are not indented), or static at any depth.
 IMMUTABLE = r"(?:[\w:<>,\s*&]*\b(?:const|constexpr)\b)"
 STATIC = re.compile(r"^[ \t]*(?:inline[ \t]+)?(?:static|thread_local)\b(?!_)(?P<rest>[^;{=]*(?:[;{=]))", re.MULTILINE)
 GLOBAL = re.compile(
@@ -73,7 +72,7 @@ GLOBAL = re.compile(
 
 
 def blanked(text):
-    """The text with comments and the insides of literals replaced by blanks; every line keeps its number."""
+    """Returns the text with blanks for comments and literals. Line numbers do not change."""
     token = re.compile(
         r'//[^\n]*|/\*.*?\*/|R"(?P<tag>[^\s()\\]*)\(.*?\)(?P=tag)"|"(?:\\.|[^"\\\n])*"|(?<![\w\'])'
         r"'(?:\\.|[^'\\\n])+'", re.DOTALL)
@@ -81,7 +80,7 @@ def blanked(text):
 
 
 def end_of_braces(code, start):
-    """The position after the brace that closes the one at start."""
+    """Returns the position after the closing brace of the one at start."""
     depth = 0
     for i in range(start, len(code)):
         depth += {"{": 1, "}": -1}.get(code[i], 0)
@@ -91,7 +90,7 @@ def end_of_braces(code, start):
 
 
 def kernel_bodies(code, macro):
-    """(start, end) of the body after each kernel macro; declarations have none."""
+    """Yields (start, end) of the body after each kernel macro, except declarations."""
     for match in re.finditer(rf"\b(?:{macro})\b", code):
         line_start = code.rfind("\n", 0, match.start()) + 1
         if re.match(r"\s*#", code[line_start:match.start()]):
@@ -104,7 +103,7 @@ def kernel_bodies(code, macro):
             if depth == 0 and code[i] == "{":
                 end = end_of_braces(code, i)
                 yield i, end
-                # member initializers with braces come before a constructor's body: a_{x}, b_{y} { ... }
+                # member initialisers with braces precede the body of a constructor: a_{x}, b_{y} { ... }
                 if "LAMBDA" in match.group() or not re.match(r"\s*[,{]", code[end:]):
                     break
                 i = end - 1
@@ -112,7 +111,7 @@ def kernel_bodies(code, macro):
 
 
 def around(code, position):
-    """(text before the brace, its position) of every brace that is open at a position, the innermost first."""
+    """Yields (text before the brace, position) of every open brace at a position, innermost first."""
     depth = 0
     for i in range(position - 1, -1, -1):
         depth += {"}": 1, "{": -1}.get(code[i], 0)
@@ -123,14 +122,14 @@ def around(code, position):
 
 
 def wrong_place(code, position):
-    """Why compilers for GPUs take no kernel that is a lambda at this position; None: they do."""
+    """Returns the reason why GPU compilers reject a lambda kernel at this position, or None."""
     for head, brace in around(code, position):
         if re.search(r"\]\s*\([^)]*\bauto\b", head):
             return "in a generic lambda"
         kind = re.search(r"\b(class|struct)\s+\w+[^()]*$", without_templates(head))
         if not kind:
             continue
-        outside = list(code[brace + 1:position])  # of what is nested in the class
+        outside = list(code[brace + 1:position])  # without nested code of the class
         depth = 0
         for i, c in enumerate(outside):
             depth += {"{": 1, "}": -1}.get(c, 0)
@@ -143,7 +142,7 @@ def wrong_place(code, position):
 
 
 def end_of_template(code, start):
-    """The position after the bracket that closes the one at start."""
+    """Returns the position after the closing bracket of the one at start."""
     depth = 0
     for i in range(start, len(code)):
         depth += {"<": 1, ">": -1}.get(code[i], 0)
@@ -153,7 +152,7 @@ def end_of_template(code, start):
 
 
 def device_views(code):
-    """Names that are declared as View or ConstView, and as nothing else; functions that return one are none."""
+    """Returns names that are declared only as View or ConstView, without functions that return one."""
     views, others = set(), set(re.findall(r"\bauto\s*&?\s*(\w+)\s*[=(]", code))
     others.update(re.findall(r"\b(\w+)\s*\([^(){};]*\)\s*(?:const\b|override\b|\{)", code))
     for match in DEVICE_VIEW.finditer(code):
@@ -165,11 +164,11 @@ def device_views(code):
 
 
 def check_host(code, kernels):
-    """Entries of device views that the host reads or writes, and pointers that it hands to kernels."""
+    """Yields accesses of host code to device views, and host pointers used in kernels."""
     def on_host(position):
         return not any(start <= position < end for start, end in kernels)
     for name in device_views(code):
-        for match in re.finditer(rf"(?<![\w.>:]){name}\s*\(\s*[^\s,)]", code):  # its label is blank
+        for match in re.finditer(rf"(?<![\w.>:]){name}\s*\(\s*[^\s,)]", code):  # labels are blank
             if on_host(match.start()):
                 yield match.start(), "host-read", f"{name}(...) outside of kernels, without a mirror"
     for match in re.finditer(r"\b(\w+)\s*=\s*[^;{}]*(?:\.|->)data\s*\(\s*\)\s*;", code):
@@ -178,7 +177,7 @@ def check_host(code, kernels):
 
 
 def check_kernels(code):
-    """Violations of the rooms whose kernels must compile for a GPU."""
+    """Yields violations in packages whose kernels must compile for a GPU."""
     yield from check_host(code, list(kernel_bodies(code, KERNEL_MACRO)))
     for match in FUNCTOR.finditer(code):
         begin = max(code.rfind(c, 0, match.start()) for c in ";{}:") + 1
@@ -191,7 +190,7 @@ def check_kernels(code):
 
 
 def without_templates(text):
-    """Template arguments removed, so that their parentheses do not look like a function's."""
+    """Returns the text without template arguments, whose parentheses look like those of a function."""
     while True:
         shorter = re.sub(r"<[^<>]*>", "", text)
         if shorter == text:
@@ -205,14 +204,14 @@ def mutable_statics(code):
         if not re.match(IMMUTABLE, declaration) and "(" not in declaration:
             yield match.start(), match.group().split("\n")[-1].strip()
         elif re.search(r"\(\s*[\d\"'-]", declaration) and not re.match(IMMUTABLE, declaration):
-            yield match.start(), match.group().strip()  # static Thing thing(3);
+            yield match.start(), match.group().strip()  # e.g. static Thing thing(3);
     for match in GLOBAL.finditer(code):
         if not re.match(IMMUTABLE, match.group()):
             yield match.start(), match.group().strip()
 
 
 def check_cpp(path, text, aliases):
-    """Violations (position, rule, what) of a C++ source; path is relative to the root."""
+    """Yields violations (position, rule, message) of a C++ source; the path is relative to the root."""
     parts, code = path.parts, blanked(text)
     for match in OLD_TRILINOS.finditer(code if "trilinos_compat" not in path.name else ""):
         yield match.start(), "trilinos-names", f"{match.group()}: see {TRILINOS_COMPAT}"
@@ -253,8 +252,8 @@ def check_text(text):
 
 
 def check(root):
-    """All violations under root as (file, line, rule, what), sorted."""
-    files = [f for f in root.iterdir() if f.is_file() and f.name != ".git"]  # a file in worktrees
+    """Returns all violations under root as (file, line, rule, message), sorted."""
+    files = [f for f in root.iterdir() if f.is_file() and f.name != ".git"]  # .git is a file in worktrees
     for folder in FOLDERS:
         files += [f for f in (root / folder).rglob("*") if f.is_file()]
     texts = {}

@@ -1,28 +1,27 @@
 #!/usr/bin/env python3
-"""Bounds the lines that the compiler reads for a header of each package, in the mean, so that builds stay fast.
+"""Bounds the mean number of lines that the compiler reads for a header of each package, to limit build times.
 
     header_lines.py ROOT COMPILER [FLAGS...]    prints the mean for each package; exit status 1 if one exceeds its bound
 
-Lines of a header: its own and those of the headers of Sprekk that it includes, and the preprocessed lines of all other
-libraries that these include, each without empty lines. Headers with the same libraries are preprocessed once. Kokkos
-has 95 thousand lines, Tpetra with Kokkos 127, Sacado with Kokkos 143, the JSON library 95; headers of the standard
-library alone are not counted. A header that needs only a name declares it. The bounds are some 2 % above the present
-means; raise one only for a header that most sources of a package need.
-"""
+The count of a header includes the headers of Sprekk that it includes, and the preprocessed lines of all other
+libraries, without empty lines. Headers with the same libraries are preprocessed once. Headers with only the standard
+library are not preprocessed. Kokkos has 95 thousand lines, Tpetra with Kokkos 127, Sacado with Kokkos 143, the JSON
+library 95. A header that needs only a name should declare it. The bounds are about 2 % above the present means.
+Raise one only for a header that most sources of a package need."""
 import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-MAX_LINES = {  # of a header, in the mean
+MAX_LINES = {  # mean lines of a header
     "base": 84500, "laws": 95000, "mesh": 102500, "fields": 124500, "contact": 116000, "assembly": 120000,
     "physics": 127000, "multigrid": 128000, "solve": 126500, "io": 118500, "model": 142000,
 }
 
 
 class Headers:
-    """The headers of all packages by their paths, with what they include."""
+    """Headers of all packages by path, with their includes."""
 
     def __init__(self, packages):
         self.own, self.libraries, self.lines = {}, {}, {}
@@ -33,7 +32,7 @@ class Headers:
             self.lines[name] = sum(1 for line in text.splitlines() if line.strip())
 
     def closure(self, name, found=None):
-        """The header and those of Sprekk that it includes."""
+        """Returns the header and all headers of Sprekk that it includes."""
         found = {name} if found is None else found
         for other in self.own[name]:
             if other in self.own and other not in found:

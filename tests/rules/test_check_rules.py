@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The checker must find each violation, and nothing in sources that keep the rules."""
+"""Tests that the checker finds each violation, and none in correct sources."""
 import tempfile
 import unittest
 from pathlib import Path
