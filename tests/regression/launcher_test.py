@@ -25,6 +25,7 @@ class Launcher(ProgramTest):
         super().setUp()
         shutil.copy(ROOT / "sprekk", self.folder)
         shutil.copy(ROOT / "CMakeLists.txt", self.folder)
+        shutil.copytree(ROOT / "apps/launcher", self.folder / "apps/launcher")
         shutil.copytree(ROOT / "xml" / "seed", self.folder / "xml" / "seed")
         binary = self.folder / "build/apps/sprekk/sprekk"
         binary.parent.mkdir(parents=True)
