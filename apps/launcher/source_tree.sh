@@ -166,6 +166,7 @@ logged() {
 # package: in output/packages, with checksums. The source archive has the files of the last commit.
 make_packages() {
   local folder=$root/output/packages libraries=() name version
+  local apps=("${plot_packages[@]}" "${mesh_packages[@]}" "${fit_packages[@]}" "${python_packages[@]}")
   install_missing "${packages[@]}" "${package_packages[@]}"
   build sprekk_app sprekk_python
   make_viewer "$build/report/viewer.js.bundle" || { say "bundling the 3D view failed; see $build/report/npm.log"; exit 1; }
@@ -175,10 +176,11 @@ make_packages() {
     if [[ $name == *-dev && $name != @(libgtest|libgmock|pybind11|libpython3)-dev ]]; then libraries+=("$name"); fi
   done
   logged debian cpack --config "$build/CPackConfig.cmake" -B "$build/cpack" \
-    -D CPACK_DEBIAN_SPREKK_PACKAGE_RECOMMENDS="$(comma_separated "${plot_packages[@]}" "${mesh_packages[@]}" "${fit_packages[@]}" "${python_packages[@]}")" \
+    -D CPACK_DEBIAN_SPREKK_PACKAGE_RECOMMENDS="$(comma_separated "${apps[@]}")" \
     -D CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS="$(comma_separated "${libraries[@]}")"
   mv "$build"/cpack/*.deb "$folder"
-  logged wheel env CC="$(cached CMAKE_C_COMPILER)" CXX="$(cached CMAKE_CXX_COMPILER)" "$(debian_python)" -m pip wheel --no-deps --wheel-dir "$folder" "$root"
+  logged wheel env CC="$(cached CMAKE_C_COMPILER)" CXX="$(cached CMAKE_CXX_COMPILER)" \
+    "$(debian_python)" -m pip wheel --no-deps --wheel-dir "$folder" "$root"
   version=$(cached CMAKE_PROJECT_VERSION)
   if [[ -e $root/.git ]]; then
     [[ ! $(git -C "$root" status --porcelain) ]] || say "the source archive is without the changes since the last commit"

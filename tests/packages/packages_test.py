@@ -32,7 +32,8 @@ def mirror():
     """The first one of this machine's Debian packages."""
     etc = Path("/etc/apt")
     for file in (*sorted(etc.glob("sources.list.d/*.sources")), etc / "sources.list"):
-        if file.exists() and (found := re.search(r"^(?:URIs:|deb(?: \[.*\])?) *(http\S+)", file.read_text(), re.MULTILINE)):
+        text = file.read_text() if file.exists() else ""
+        if found := re.search(r"^(?:URIs:|deb(?: \[.*\])?) *(http\S+)", text, re.MULTILINE):
             return found[1]
     return "http://deb.debian.org/debian"
 
@@ -42,7 +43,8 @@ class Debian:
 
     def __init__(self, folder):
         self.folder = folder
-        subprocess.run(["debootstrap", "--variant=minbase", "bookworm", folder, mirror()], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(["debootstrap", "--variant=minbase", "bookworm", folder, mirror()], check=True,
+                       stdout=subprocess.DEVNULL)
         for name in ("resolv.conf", "hosts", "ssl/certs/ca-certificates.crt"):
             if Path("/etc", name).exists():
                 (folder / "etc" / name).parent.mkdir(parents=True, exist_ok=True)
@@ -57,14 +59,14 @@ class Debian:
     def call(self, command, user="root", expect=0):
         """What a command of bash prints, started in the user's home; its mounts and processes end with it."""
         home = "/root" if user == "root" else f"/home/{user}"
-        surroundings = {name: value for name, value in os.environ.items() if name.startswith("PIP_") or name.endswith("_proxy")}
-        surroundings |= {"PATH": "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": home, "DEBIAN_FRONTEND": "noninteractive",
-                         "CCACHE_DIR": "/ccache", "CC": "cc", "CXX": "c++", "LC_ALL": "C.UTF-8"}
+        surroundings = {name: value for name, value in os.environ.items() if re.match("PIP_|.*_proxy$", name)}
+        surroundings |= {"PATH": "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": home, "LC_ALL": "C.UTF-8",
+                         "DEBIAN_FRONTEND": "noninteractive", "CCACHE_DIR": "/ccache", "CC": "cc", "CXX": "c++"}
         enter = (f"mount --bind {self.cache} {self.folder}/ccache && mount -t sysfs sysfs {self.folder}/sys && "
                  f"exec chroot --userspec={user} {self.folder} bash -c \"$0\"")
-        done = subprocess.run(["unshare", "--mount", "--pid", "--fork", f"--mount-proc={self.folder}/proc", "sh", "-c", enter,
-                               f"cd {home}; {command}"], env=surroundings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run(["unshare", "--mount", "--pid", "--fork", f"--mount-proc={self.folder}/proc", "sh", "-c",
+                               enter, f"cd {home}; {command}"], env=surroundings, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != expect:
             raise AssertionError(f"{command}\nstatus {done.returncode}, expected {expect}\n{done.stdout[-5000:]}")
         return done.stdout
@@ -93,20 +95,24 @@ class Packages(unittest.TestCase):
         self.assertEqual(len((PACKAGES / "SHA256SUMS").read_text().splitlines()), 4)
 
     def test_2_program(self):
-        self.debian.install("/packages/sprekk_*.deb", "gcc-", "gcc-12-", "g++-", "g++-12-")  # some packages recommend them
+        compilers = ("gcc-", "gcc-12-", "g++-", "g++-12-")  # recommended by other packages; not to be installed
+        self.debian.install("/packages/sprekk_*.deb", *compilers)
         self.user("type gcc c++ cc", expect=1)
         version = re.search(r"project\(Sprekk VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
         self.assertIn(version, self.user("sprekk --version"))
         self.assertNotIn("./sprekk", self.user("sprekk --help"))
         self.user(f"sprekk check {XML}/seed/push_2d.xml")
-        self.user(f"sprekk run {XML}/seed/push_3d.xml --output one && sprekk run {XML}/seed/push_3d.xml --ranks 2 --output two")
+        self.user(f"sprekk run {XML}/seed/push_3d.xml --output one")
+        self.user(f"sprekk run {XML}/seed/push_3d.xml --ranks 2 --output two")
         self.assertRegex(self.user("cat two/results.json"), r'"ranks": *2\b')
         self.user("mkdir -p a/b && cd a/b && sprekk plot ../../two && ls ../../two/*.png")
         self.user("sprekk report two")
-        self.assertGreater((self.debian.folder / "home/user/two/report.html").stat().st_size, 1_000_000)  # with the 3D view
+        self.assertIn("vtkRenderWindow", self.user("cat two/report.html"))  # the 3D view
         self.user(f"sprekk point {XML}/point/cyclic_shear.xml > point.csv && sprekk plot point.csv")
-        self.user(f"sprekk mesh {XML}/networks/outcrop_2d.xml -o outcrop.msh && sprekk mesh-info outcrop.msh --fractures traces,fault")
-        self.user(f"sprekk run {XML}/networks/outcrop_2d.xml --output outcrop && sprekk export outcrop -o outcrop.geojson")
+        self.user(f"sprekk mesh {XML}/networks/outcrop_2d.xml -o outcrop.msh")
+        self.user("sprekk mesh-info outcrop.msh --fractures traces,fault")
+        self.user(f"sprekk run {XML}/networks/outcrop_2d.xml --output outcrop")
+        self.user("sprekk export outcrop -o outcrop.geojson")
         for scene in sorted((ROOT / "xml/new").glob("*.xml")):
             self.user(f"sprekk new {scene.stem} {scene.name} && test -s {scene.name}")
         for command in ("test", "build", "perf contact", "fuzz", "package", "docs"):
@@ -128,7 +134,7 @@ class Packages(unittest.TestCase):
         files = self.debian.call("dpkg -L sprekk").split()
         self.assertIn("/usr/bin/sprekk", files)
         self.debian.call("apt-get remove -y sprekk")
-        left = self.debian.call("find / -xdev -name '*sprekk*' -not -path '/packages/*' -not -path '/home/*' -not -path '/proc/*'")
+        left = self.debian.call("find / -xdev -name '*sprekk*' -not -path '/packages/*' -not -path '/home/*'")
         self.assertEqual(left, "")
         here = [self.debian.folder / name[1:] for name in files]
         self.assertEqual([str(file) for file in here if file.is_symlink() or file.is_file()], [])
@@ -140,7 +146,8 @@ class Packages(unittest.TestCase):
         for file in ("own_unknown.cpp", "grout.hpp", "coupled.cpp", "coupled.hpp", "own_flow.hpp", "reservoir.hpp"):
             self.debian.put(ROOT / "apps/hosts" / file, "home/user/host")
         self.debian.put(ROOT / "apps/multigrid/elasticity.cpp", "home/user/host")
-        self.user("cmake -S host -B host/build -G Ninja && ninja -C host/build my_host && host/build/my_host push_2d.xml")
+        self.user("cmake -S host -B host/build -G Ninja && ninja -C host/build my_host")
+        self.assertIn("face ", self.user("host/build/my_host push_2d.xml"))
 
     def test_7_pip(self):
         """The source archive, without git, with a virtual environment and with Debian's Python."""
@@ -148,7 +155,7 @@ class Packages(unittest.TestCase):
         self.debian.call("tar -xf /packages/sprekk-*.tar.gz && mv sprekk-*/ source")
         self.debian.call("python3 -m venv environment && environment/bin/pip install ./source")
         (self.debian.folder / "root/model.py").write_text(MODEL.replace(XML, "/root/source/xml"))
-        self.assertIn("/root/environment/", self.debian.call("OMPI_ALLOW_RUN_AS_ROOT=1 environment/bin/python model.py"))
+        self.assertIn("/root/environment/", self.debian.call("environment/bin/python model.py"))
         self.debian.call("python3 -m pip install --break-system-packages ./source")
         self.assertIn("/usr/local/lib/python3", self.debian.call("python3 model.py"))
         self.debian.call("python3 -m pip uninstall -y --break-system-packages sprekk")

@@ -63,11 +63,11 @@ def mesh_command():
 def make_mesh(scene, folder):
     command = mesh_command()
     if not command:
-        raise _sprekk.Error(f'{scene.name}: the mesh of a network requires the command `sprekk`, which is not on the path; '
-                            'generate the mesh with `sprekk mesh`, and set "path" of "Mesh file" to it')
+        raise _sprekk.Error(f'{scene.name}: the mesh of a network requires the command `sprekk`, which is not on the '
+                            'path; generate the mesh with `sprekk mesh`, and set "path" of "Mesh file" to it')
     file = folder / "scene.xml"
     file.write_text(scene.to_xml(defaults=True))
-    done = subprocess.run([*command, str(file), "-o", str(folder / "network.msh"), "--quiet"], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL)
+    done = subprocess.run([*command, str(file), "-o", str(folder / "network.msh"), "--quiet"], capture_output=True,
+                          text=True, stdin=subprocess.DEVNULL)
     if done.returncode:
         raise _sprekk.Error(done.stderr.strip().removeprefix("sprekk: ").replace(str(file), scene.name))
