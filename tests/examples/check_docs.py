@@ -2,8 +2,8 @@
 """Checks the documentation.
 
     check_docs.py quotes ROOT              Code in a ```cpp, ```xml or ```cmake block is equal to text of the file in
-                                           the comment before the block (<!-- from PATH -->). Relative links are valid. The
-                                           version is that of CMakeLists.txt.
+                                           the comment before the block (<!-- from PATH -->). Relative links are valid.
+                                           The version is that of CMakeLists.txt.
     check_docs.py commands ROOT BINARY MPIEXEC PAGES...
                                            Each command in a ```sh or ```console block ends with status 0, or N if
                                            "# exit N" follows. The lines below a command in a ```console block are part

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The section Accuracy: accuracy_test.py PROGRAM ROOT MPIEXEC"""
+"""Error control by the section Accuracy: accuracy_test.py PROGRAM ROOT MPIEXEC"""
 import math
 
 from program import ProgramTest, main
@@ -38,7 +38,7 @@ class Accuracy(ProgramTest):
                 self.assertAlmostEqual(float(one["line"].split(": ")[1].split(" ")[0]) / one["value"], 1, delta=1e-3)
                 self.assertIn("asked 1 %)", one["line"])
                 cells = [mesh["cells"] for mesh in accuracy["meshes"]]
-                self.assertGreaterEqual(len(cells), 2)  # one mesh alone tells too little
+                self.assertGreaterEqual(len(cells), 2)  # one mesh does not test the refinement
                 self.assertEqual(cells, sorted(set(cells)))
                 self.assertEqual(results["mesh"]["cells"], cells[-1])
                 mean = results["steps"][-1]["fractures"]["crack"][f"mean_{quantity}"]
@@ -77,7 +77,7 @@ class Accuracy(ProgramTest):
             self.assertIn(words, accuracy["ended"])
 
     def test_flow_in_rock_and_fractures(self):
-        """Of xml/flow/network_2d.xml, that no time passes in: flow through the west and into a well on a fracture, and pressure."""
+        """Steady flow in xml/flow/network_2d.xml: flow through the boundary and into a well, and pressure."""
         steady = ["Flow.compressibility=0", "Time.steps=1", "Mesh.cells={10, 10}", QUIET]
         well = ["Flow.Wells.well.points={60, 70}", "Flow.Wells.well.radius=0.1 m", "Flow.Wells.well.pressure=0.5e6"]
         sets = [*goal("flow", "through", boundary="west", relative=0.02), *goal("flow", "out", well="well", relative=0.02),
@@ -101,7 +101,7 @@ class Accuracy(ProgramTest):
         self.assertLess(abs(through["value"] - fine["accuracy"]["quantities"]["through"]["value"]), 1.5 * through["asked"])
 
     def test_errors_of_earlier_steps_last(self):
-        """Flow that hardly changes any more has the error of steady flow, which all steps before have made."""
+        """The error of almost steady flow after many steps is equal to that of steady flow."""
         goals = [*goal("flow", "through", boundary="west", relative=0.5), *goal("pressure", "in", fractures="{short, branch}", relative=0.5)]
         single = ["Mesh.cells={20, 20}", "Accuracy.cells=10", QUIET]  # the first mesh is the last
         errors = []

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What is wrong with the input is told: bad_input_test.py PROGRAM ROOT MPIEXEC COMMANDS
+"""Error messages for bad input: bad_input_test.py PROGRAM ROOT MPIEXEC COMMANDS
 
-Every bad input gives one message, which names the file, the place, the value and what is allowed, and an exit status; nothing
-hangs or crashes. On 3 ranks it is the same message and status. The first of each test is also asked of the program itself;
-COMMANDS is commands/commands.cpp, which takes many of them without a new start."""
+Bad input gives one message with the file, the place, the value and the allowed values, and an exit status. The program
+does not hang or crash. Message and status are the same on 3 ranks. COMMANDS is commands/commands.cpp, which executes
+many commands in one process. The first command of each test is also executed by the program itself."""
 import os
 import random
 import re
@@ -89,8 +89,9 @@ def setUpModule():
 
 class BadInput(ProgramTest):
     def refuse(self, words, *arguments, status=1, any_point=False):
-        """The message of `sprekk ARGUMENTS`, which is one, and has all of these words.
-        `any_point`: of several points at which an expression fails, each number of ranks may name another."""
+        """Returns the message of `sprekk ARGUMENTS`, after checks that it is one message and contains all words.
+
+        `any_point`: if an expression fails at several points, different numbers of ranks may name different points."""
         answers = [process.call(self.folder, *arguments) for process in PROCESSES]
         if not hasattr(self, "asked"):
             self.asked = True
@@ -115,7 +116,7 @@ class BadInput(ProgramTest):
         return path.name
 
     def limited(self, *arguments, memory, seconds=TIME_LIMIT):
-        """A call, on one rank, that may take so many bytes of addresses."""
+        """Runs a command on one rank with a limit of the address space in bytes."""
         return subprocess.run(["timeout", str(seconds), program.PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
                               stdin=subprocess.DEVNULL, env={**os.environ, **ALONE},
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (memory, memory)))
@@ -125,7 +126,7 @@ class BadInput(ProgramTest):
         return self.refuse([PUSH, *words], "check", self.scene(PUSH), *sets, any_point=any_point)
 
     def refuse_mesh(self, words, content, fractures=FRACTURE, options=()):
-        """A scene on a mesh of this content (text, bytes, or None: none)."""
+        """Checks the message of a scene with a mesh file of this content (text, bytes, or None for no file)."""
         text = self.scene(PUSH).read_text()
         begin, end = text.index('  <ParameterList name="Mesh">'), text.index('  <ParameterList name="Materials">')
         text = (text[:begin] + '<ParameterList name="Mesh file"><Parameter name="path" type="string" value="a.msh"/>'
@@ -141,7 +142,7 @@ class BadInput(ProgramTest):
 
 class Meshes(BadInput):
     def test_sound_one(self):
-        """Else the others would prove nothing."""
+        """A valid mesh gives no error, as a check of the other tests."""
         with self.assertRaises(AssertionError) as caught:
             self.refuse_mesh([], SQUARES)
         self.assertIn("scene.xml: no errors", str(caught.exception))
@@ -182,7 +183,7 @@ class Meshes(BadInput):
         self.refuse_mesh(["$Nodes, line 13: the number of nodes is 1000000000, which the rest of the file"],
                          replaced(SQUARES, ("\n6\n1 0 0 0", "\n1000000000\n1 0 0 0")))
         (self.folder / "a.msh").write_bytes(b"x")
-        os.truncate(self.folder / "a.msh", 1 << 40)  # sparse
+        os.truncate(self.folder / "a.msh", 1 << 40)  # sparse file
         self.refuse_mesh(["a.msh: line 1: found \"x??", "expected $MeshFormat"], None)
         (self.folder / "a.msh").write_text(SQUARES)
         os.truncate(self.folder / "a.msh", 1 << 43)
@@ -224,7 +225,9 @@ class Meshes(BadInput):
         self.refuse_mesh(["elements 12, 10 and 11 share the face"], twice)
 
     def test_other_diagonal(self):
-        """Tetrahedra on both sides of a square that is cut along different diagonals: no node hangs."""
+        """Two tetrahedra meet two others at a square with a different diagonal.
+
+        The mesh is rejected; equal diagonals are valid."""
         nodes = "\n7\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 .5 1\n6 .5 .5 -1\n7 9 9 9\n"
         below = {"same": ("1 3 2 6", "1 4 3 6"), "other": ("1 4 2 6", "2 4 3 6")}
         for name, (a, b) in below.items():
@@ -545,7 +548,7 @@ class Scenes(BadInput):
 
 
     def test_numbers_with_commas(self):
-        """Each hint helps where it is due, and is silent elsewhere."""
+        """The hint about separators occurs for numbers with commas, and not otherwise."""
         hint = "numbers have a decimal point and no separators of thousands"
         for value in ("30,000 MPa", "30 000", "30'000", "-1,5"):
             self.refuse_set([f'"shear modulus": is "{value}"', hint], f"Materials.rock.shear modulus={value}")
@@ -580,7 +583,7 @@ class Scenes(BadInput):
                                     ("Line Search.Method", "More'-Thuente", 'Line Search > "Method": must not be given'),
                                     ("Printing", "3", '"Printing": is the integer 3, must be a section')):
             self.refuse_set([place, words], f"Solver.NOX.{entry}={value}")
-        for entry in ("Direction.Newton.Rescue Bad Newton Solve=3",):  # what only NOX knows
+        for entry in ("Direction.Newton.Rescue Bad Newton Solve=3",):  # checked only by NOX
             self.refuse([PUSH, "Sprekk > Solver > NOX: NOX does not take these parameters: Error"], "run", self.scene(PUSH),
                         "--set", "Solver.NOX." + entry)
 
@@ -595,7 +598,7 @@ class Scenes(BadInput):
             self.refuse(["a.xml: line ", f"has the character reference {reference}, which XML does not allow"], "check", "a.xml")
 
     def test_long_values_are_not_repeated(self):
-        """Messages stay short, whatever the input."""
+        """Messages stay short for long values."""
         many = "1+" * 50000
         for override in ("Boundary conditions.moved.displacement={0, " + many + "}", "Boundary conditions.moved.displacement={0, " + many + "t+}",
                          "Materials.rock.shear modulus=" + many, "Time.end=" + many, "Bulk.material=" + many, many, many + "=1",
@@ -635,8 +638,11 @@ class Memory(BadInput):
                                       'which alone take 43.2 GB; there are .* GB: take fewer, and "refinements"')
 
     def test_end_of_memory(self):
-        """How much of it a small run needs depends on the machine; a mesh 250 times as large does not fit in beside. OpenBLAS asks
-        for ever where there is none for its buffers."""
+        """A large mesh under a memory limit gives an error.
+
+        The limit is found with a small run, since it depends on the machine.
+
+        OpenBLAS retries without end if there is no memory for its buffers."""
         scene = self.scene(PUSH)
         enough = next(limit for limit in range(256 << 20, 64 << 30, 256 << 20)
                       if self.limited("check", scene, memory=limit, seconds=60).returncode == 0)
@@ -647,10 +653,10 @@ class Memory(BadInput):
 
 
 class AllAtOnce(BadInput):
-    """What is wrong with entries, names, the mesh and the conditions is told together, and nothing that only follows."""
+    """Errors in entries, names, the mesh and conditions are reported together, without consequential errors."""
 
     def refuse_all(self, lines, *arguments):
-        """Every one of the lines has the words of one of `lines`, and opens with the scene's name."""
+        """Checks that each line begins with the name of the scene, and contains the words of one item of `lines`."""
         for command in ("check", "run"):
             err = self.refuse([], command, *arguments)
             told = err.removeprefix("sprekk: ").splitlines()
@@ -692,7 +698,7 @@ class AllAtOnce(BadInput):
         moved = "Boundary conditions.moved."
         unknown = ['moved > "displacment"', "unknown"]
         loose = ("Boundary conditions.fixed.displacement={free, 0}", moved + "displacement={free, -1}")
-        self.refuse_all([unknown], scene, *self.sets(*loose, moved + "displacment=1"))  # it may hold the rock
+        self.refuse_all([unknown], scene, *self.sets(*loose, moved + "displacment=1"))  # may be a support
         self.refuse_all([['"endd"', "unknown"]], scene, *self.sets(
             "Time.endd=2", "Boundary conditions.third.boundary=west", "Boundary conditions.third.displacement={t-2, 0}"))
         self.refuse_all([['"cels"', "unknown"]], scene, *self.sets(*self.CLASH, "Mesh.cels={2, 2}"))
@@ -726,7 +732,7 @@ class Outputs(BadInput):
             self.assertNotIn("filesystem error", err)
 
     def test_directory_of_another_user(self):
-        """Not even whether it exists can be known."""
+        """Without permissions it is unknown whether the directory exists."""
         prefix = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"] if os.geteuid() == 0 else []
         if prefix and not shutil.which(prefix[0]):
             self.skipTest("root reads everything")
@@ -743,7 +749,7 @@ class Outputs(BadInput):
         closed.chmod(0o755)
 
     def test_full_disk_at_the_end(self):
-        """There is no room for a new file; the old one has some, and says what happened."""
+        """There is no space for a new file. The old results.json is overwritten with the error."""
         self.run_scene(PUSH, "Time.steps=400", "Output.vtu=false", output="whole")
         whole = (self.folder / "whole/results.json").stat().st_size
         def limit():
@@ -759,7 +765,7 @@ class Outputs(BadInput):
         self.assertIn("File too large", results["reason"])
 
     def full(self, name, *options, ranks):
-        """A run for which the file with this name lies on a full disk."""
+        """Runs a scene with the named file on a full disk."""
         (self.folder / "out" / name).parent.mkdir(parents=True, exist_ok=True)
         (self.folder / "out" / (name + ".part")).symlink_to("/dev/full")
         _, err = self.call("run", self.scene(PUSH), "--output", "out", "--set", "Time.steps=3", *options, ranks=ranks, expect=1)

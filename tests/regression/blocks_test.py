@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What VTK reads of the fractures that a run wrote: blocks_test.py PROGRAM ROOT MPIEXEC
+"""Fracture files read by VTK: blocks_test.py PROGRAM ROOT MPIEXEC
 
-Needs numpy and VTK's Python; without them it ends with status 77, which ctest shows as skipped."""
+Requires numpy and VTK's Python. If one is missing, the status is 77, for ctest's "skipped"."""
 import importlib.util
 import sys
 
@@ -20,10 +20,12 @@ from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 
 
 class Blocks(ProgramTest):
-    """A block for each fracture, and where they meet."""
+    """Blocks of fractures and of intersections."""
 
     def blocks(self, output="out"):
-        """Of all steps; each the same faces and intersections as in the first."""
+        """Returns the blocks of the first step and the number of steps.
+
+        Other steps have the same faces and intersections."""
         steps = [read.blocks(file) for _, file in read.written_steps(self.folder / output, "fractures")]
         for step in steps[1:]:
             self.assertEqual([(name, self.places(grid)) for name, grid in step.items()],
@@ -31,7 +33,7 @@ class Blocks(ProgramTest):
         return steps[0], len(steps)
 
     def places(self, grid):
-        """Centres of the cells, sorted."""
+        """Returns the sorted centres of the cells."""
         points = vtk_to_numpy(grid.GetPoints().GetData())
         return sorted(tuple(np.round(points[cell].mean(axis=0), 9) + 0) for cell in read.cells(grid.GetCells()))
 
@@ -80,7 +82,7 @@ class Blocks(ProgramTest):
         scene = ["contact/network_t.xml", "Output.checkpoints.steps=1"]
         self.run_scene(*scene, "Time.end=1", "Time.steps=1", ranks=2)
         self.call("run", self.scene(scene[0]), "--output", "out", "--restart", *(word for o in (*scene[1:], "Time.end=2", "Time.steps=2") for word in ("--set", o)))
-        self.assertEqual(self.blocks()[1], 2)  # the same places in both steps
+        self.assertEqual(self.blocks()[1], 2)  # same places in both steps
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""What the program says and returns: command_line_test.py PROGRAM ROOT MPIEXEC
+"""Output and exit status of the program: command_line_test.py PROGRAM ROOT MPIEXEC
 
-Every error must end the program on all ranks with status 1 and be told once, with the file, the place, the value and
-what is allowed."""
+An error ends the program on all ranks with status 1. It is reported once, with the file, the place, the value and the
+allowed values."""
 import re
 
 from program import ROOT, ProgramTest, main
@@ -13,7 +13,7 @@ MOVED = "Boundary conditions.moved.displacement"
 
 class Errors(ProgramTest):
     def expect_error(self, scene, words, *overrides, command="run", on_two=False):
-        """Status 1, one message, all of these words in it; on 1 rank and, of each stage at which a run can fail, on 2 as well."""
+        """Checks for status 1 and one message with all words, on 1 rank; with `on_two` also on 2 ranks."""
         sets = [word for override in overrides for word in ("--set", override)]
         output = ["--output", "out"] if command == "run" else []
         for ranks in (1, 2) if on_two else (1,):
@@ -27,7 +27,7 @@ class Errors(ProgramTest):
                     self.assertIn(word, err)
 
     def changed(self, old, new, name=PUSH):
-        """A scene file with some text replaced."""
+        """Writes a scene with replaced text; returns its path."""
         text = self.scene(name).read_text()
         self.assertIn(old, text)
         path = self.folder / "changed.xml"
@@ -245,12 +245,12 @@ class Commands(ProgramTest):
             self.assertIn(f"{name}: no errors", out)
             if name in (PUSH, "verification/uniaxial_2d.xml"):
                 self.assertEqual(err, "")
-            else:  # loads and friction that no rock has
+            else:  # unrealistic loads and friction
                 self.assertTrue(err and all(line.startswith("warning: ") for line in err.splitlines()), err)
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_hint_on_order_1_at_fronts(self):
-        """In 3D, where fractures end inside of the rock."""
+        """The hint appears in 3D for fractures that end inside the rock."""
         hint, coarse = "fractures end inside of the rock", "Mesh.cells={6, 6, 6}"
         for scene, overrides, times in (("seed/immersed_3d.xml", [coarse], 1), ("seed/immersed_3d.xml", [coarse, "Mesh.tips=plain"], 1),
                                         ("seed/immersed_3d.xml", [coarse, "Mesh.order=2"], 0), ("seed/push_3d.xml", [], 0),
@@ -265,7 +265,7 @@ class Commands(ProgramTest):
         self.assertTrue((self.folder / "output" / "push_2d" / "results.json").exists())
 
     def test_default_output_of_variants(self):
-        """Each has its own, which `directory` prints."""
+        """Each variant has its own output directory, as printed by `directory`."""
         variants = [["Materials.joint.friction coefficient=0.5"], ["Materials.joint.friction coefficient=0.25"],
                     [MOVED + "={1, -1}"], [MOVED + "={1, -2}"], ["Time.steps=2", "Time.end=3"], [MOVED + "={" + "0+" * 100 + "1, -1}"]]
         names = set()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Steps that are easy must be cheap: convergence_test.py PROGRAM ROOT MPIEXEC [NUMBER OF RANDOM SCENES] [SEED]"""
+"""Simple steps need few iterations: convergence_test.py PROGRAM ROOT MPIEXEC [NUMBER OF RANDOM SCENES] [SEED]"""
 import random
 import sys
 
@@ -19,12 +19,12 @@ def box(cell, n, size=1.0):
 
 
 def joint_in(dim, size, begin=0.0, end=1.0):
-    """Along x (and y) at half the height."""
+    """Returns a fracture in the x direction (3D: x and y) at half the height."""
     return {"lower corner": [begin * size] * (dim - 1) + [size / 2], "upper corner": [end * size] * (dim - 1) + [size / 2]}
 
 
 def held(dim):
-    """Rollers on all sides but the top: a section for each."""
+    """Returns a section with rollers for each side except the top."""
     sides = (["west", "south"], ["east"]) if dim == 2 else (["west", "south", "bottom"], ["east", "north"])
     component = {"west": 0, "east": 0, "south": 1, "north": 1, "bottom": 2}
     return {side: {"boundary": side, "displacement": [0.0 if k == component[side] else "free" for k in range(dim)]}
@@ -32,7 +32,7 @@ def held(dim):
 
 
 def small_change(draw):
-    """A scene in which temperatures or pressures change by a small part of their level, in steps of unequal length."""
+    """Returns a random scene with small relative changes of temperature or pressure, and steps of unequal length."""
     kind = draw.choice(["heat", "flow", "poro", "thm"])
     heat, flow, deforms = kind in ("heat", "thm"), kind != "heat", kind in ("poro", "thm")
     size, n = 10**draw.uniform(-1, 3), 4
@@ -89,7 +89,7 @@ class Convergence(ProgramTest):
             self.assertEqual(step["cuts"], 0, f"{label}, t = {step['time']}")
 
     def test_short_steps_of_heat_take_one_iteration(self):
-        """What a short step conducts is below the rounding of the temperature times the storage of a cell."""
+        """The heat conducted in a short step is below the round-off of the heat stored in a cell."""
         for name, end in (("heat/cooling_2d.xml", 2e3), ("heat/cooling_2d.xml", 2e-2), ("heat/cooling_3d.xml", 2)):
             for scheme in ("BDF2", "implicit Euler"):
                 results = self.run_scene(name, f"Time.end={end}", "Time.steps=5", f"Time.scheme={scheme}", "Output.vtu=false")
@@ -102,7 +102,7 @@ class Convergence(ProgramTest):
             self.cheap(self.run_tree(tree), 6, f"scene {number} of seed {SEED}: {tree}")
 
     def sliding(self, dim, dilation):
-        """A fault that a fluid makes slide and dilate; the pressure of the well stays from t = 1 on."""
+        """Returns a scene with slip and dilation of a fault by injection, with constant well pressure after t = 1."""
         size = 20.0
         _, mesh = box("quadrilateral" if dim == 2 else "hexahedron", 8 if dim == 2 else 4, size)
         mesh["fractures"] = {"fault": joint_in(dim, size)}
@@ -134,7 +134,7 @@ class Convergence(ProgramTest):
                         self.assertLessEqual(step["newton_iterations"], 1, f"{dim}D, {dilation}, {ranks}: {step['time']}")
 
     def test_cohesion_holds_without_compression(self):
-        """Pure shear below the cohesion: the joint sticks, and bears G gamma, whatever rounding makes of the normal traction."""
+        """Pure shear below the cohesion: the joint sticks with traction G gamma, independently of round-off."""
         for cell, n, turned in (("quadrilateral", 2, 0), ("triangle", 6, 17), ("triangle", 12, 17), ("hexahedron", 2, 0), ("tetrahedron", 2, 0)):
             dim, mesh = box(cell, n)
             mesh.update({"periodic": ["x"] if dim == 2 else ["x", "y"], "fractures": {"joint": joint_in(dim, 1.0)}})
@@ -159,7 +159,7 @@ class Convergence(ProgramTest):
                 self.assertEqual(face["fraction_stick"], 1)
 
     def test_nearly_equal_joints_slide(self):
-        """Of two joints in series the weaker one slides, however little they differ."""
+        """Of two joints in series the weaker one slides, also with a very small difference."""
         for dim in (2, 3):
             for exponent, ranks in ((4, 1), (8, 1), (9, 2), (9.8, 1), (10, 1), (10, 2), (10.2, 1), (10.4, 1), (10.6, 2), (11, 1), (13, 2), (16, 1)):
                 n = [2] * (dim - 1) + [6]
@@ -187,7 +187,7 @@ class Convergence(ProgramTest):
                 self.assertAlmostEqual(slip, 0.5 - shear / 0.4 - 2 * shear / 2, 8, f"{dim}D, 1e-{exponent}, {ranks}")
 
     def test_chosen_steps_end_where_a_rate_has_knots(self):
-        """A step of the least length that is rejected for its error is not tried again with the same length."""
+        """A rejected step of the minimum length is not repeated with the same length."""
         dim, mesh = box("triangle", 4, 10.0)
         mesh["fractures"] = {"f": joint_in(dim, 10.0)}
         tree = {"Mesh": mesh, "Bulk": {"material": "rock", "rigid": True}, "Fractures": {"material": "joint"},
@@ -209,7 +209,9 @@ class Convergence(ProgramTest):
                     self.assertLessEqual(step["rejected"], 5)
 
     def test_temperatures_beyond_the_given_ones_are_reported(self):
-        """A long first step of BDF2 overshoots after a sudden change; implicit Euler does not."""
+        """A warning reports that a long first step of BDF2 overshoots after a sudden change.
+
+        Implicit Euler does not."""
         for cell in ("quadrilateral", "hexahedron"):
             dim, mesh = box(cell, 4, 10.0)
             mesh["fractures"] = {"f": joint_in(dim, 10.0)}
@@ -234,7 +236,7 @@ class Convergence(ProgramTest):
                     self.assertEqual("K beyond the given ones, 300 to 350 K" in err, warns, f"{cell}, {ranks}, {scheme}, {source}: {err}")
 
     def test_joints_give_out_no_more_fluid_than_they_hold(self):
-        """Closure beyond the initial aperture: the aperture ends at its bound, and the rest has left the joint."""
+        """Closure beyond the initial aperture: the aperture ends at its bound, and the other fluid left the joint."""
         initial, residual, length = 2e-4, 1e-5, 1.0
         for dim in (2, 3):
             _, mesh = box("quadrilateral" if dim == 2 else "hexahedron", 4)
@@ -258,7 +260,9 @@ class Convergence(ProgramTest):
             self.assertIn("more than its \"initial aperture\"", self.call("check", self.folder / "scene.xml")[1])
 
     def test_joints_that_weaken_slip_alike_on_any_number_of_ranks(self):
-        """Water makes joints slip, which wears them: Newton's method must not go astray, for then rounding decides on the state at the end."""
+        """Injection causes slip with wear of joints.
+
+        The final state does not depend on round-off and the number of ranks."""
         names = ("max_slip", "max_opening", "mean_fracture_pressure", "mean_hydraulic_aperture")
         ends = []
         for ranks in (1, 2, 3):

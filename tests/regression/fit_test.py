@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fits of joints to curves: fit_test.py PROGRAM ROOT MPIEXEC
 
-Needs SciPy and matplotlib; without them it ends with status 77, which ctest shows as skipped."""
+Requires SciPy and matplotlib. If one is missing, the status is 77, for ctest's "skipped"."""
 import contextlib
 import csv
 import importlib.util
@@ -36,7 +36,7 @@ BOTH = [word for name in TRUE for word in ("--parameter", name)]
 
 
 class Estimates(unittest.TestCase):
-    """Least squares without the program, on y = a exp(-b x) + c."""
+    """Least squares without the program, for y = a exp(-b x) + c."""
     x = np.linspace(0, 4, 30)
 
     def estimate(self, seed, noise):
@@ -89,7 +89,7 @@ class Estimates(unittest.TestCase):
 
 class Fits(ProgramTest):
     def measured(self, noise):
-        """The curve of known parameters, with normal errors of a part of 1 MPa and 1 mm."""
+        """Writes the curve for known parameters with normal errors, in parts of 1 MPa and 1 mm."""
         sets = [word for name, value in TRUE.items() for word in ("--set", f"Materials.joint.{name}={value}")]
         out, _ = self.call("point", self.scene(SHEAR), *sets)
         random = np.random.default_rng(7)
@@ -110,7 +110,7 @@ class Fits(ProgramTest):
         return out.getvalue() if expect == 0 else err.getvalue()
 
     def told(self, text):
-        """{name: (value, low, high)}"""
+        """Returns {name: (value, low, high)} of the output."""
         lines = [line for line in text.splitlines() if "95 %:" in line]
         found = {}
         for name in TRUE:
@@ -125,7 +125,11 @@ class Fits(ProgramTest):
         self.assertTrue((self.folder / "curve_fit.png").is_file())
 
     def test_with_noise_intervals_of_twice_the_width_hold_them(self):
-        """One draw in twenty misses an interval of 95 %, which the estimates above count; one in 15000 misses this."""
+        """Intervals of twice the width contain the parameters.
+
+        A random sample violates this with a probability of 1/15000.
+
+        A 95 % interval fails in one of twenty samples, as tested by the class Estimates."""
         path = self.measured(0.02)
         widths = []
         more = ["--match", "normal stress=-traction_n", "--match", "normal displacement=change of jump_n"]
@@ -135,14 +139,14 @@ class Fits(ProgramTest):
                 self.assertTrue(low < value < high)
                 self.assertTrue(2 * low - value <= TRUE[name] <= 2 * high - value, told)
             widths.append(told["joint roughness coefficient"][2] - told["joint roughness coefficient"][1])
-        self.assertLess(widths[1], widths[0])  # more columns tell more
+        self.assertLess(widths[1], widths[0])  # more columns reduce the interval
         self.assertLess(widths[0], 2)
 
     def test_rows_beyond_until_are_predicted(self):
         text = self.fit(self.measured(0), *ALONG, *STRESS, *BOTH, "--until", "5")
         self.assertIn("rows fitted", text)
         predicted = next(line for line in text.splitlines() if "rows predicted" in line)
-        self.assertEqual(predicted.split(",")[1].split()[0], "13")  # of 5.2 to 8.8 mm
+        self.assertEqual(predicted.split(",")[1].split()[0], "13")  # rows from 5.2 to 8.8 mm
         self.assertLess(float(predicted.partition("difference ")[2].split()[0]), 10)  # Pa
 
     def test_the_picture_has_both_curves(self):

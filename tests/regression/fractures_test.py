@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Numbers of single fractures of sets: fractures_test.py PROGRAM ROOT MPIEXEC"""
+"""Results of single fractures of sets: fractures_test.py PROGRAM ROOT MPIEXEC"""
 import csv
 import math
 
@@ -30,7 +30,9 @@ class Fractures(ProgramTest):
                 self.assertAlmostEqual(one["centre"][i], middle, delta=1e-6)
 
     def test_slip_tendency_of_uniform_stress(self):
-        """Fractures that neither slip nor yield leave the stress as it is: shear over compression is Mohr's."""
+        """Stiff fractures without slip do not change a uniform stress.
+
+        The slip tendency follows from its components."""
         r = self.run_mapped("Materials.mapped joint.tangential stiffness=1e9 GPa/m", "Time.schedule={1e-9}")
         for one, tendency in zip(r["single_fractures"], r["steps"][0]["single_fractures"]["slip_tendency"]):
             nx, ny, _ = one["normal"]
@@ -38,7 +40,7 @@ class Fractures(ProgramTest):
             self.assertAlmostEqual(tendency, shear / compression, delta=1e-6)
 
     def test_which_slip(self):
-        """In one command: in words, and as a table."""
+        """One run lists the slipping fractures in the log and in a table."""
         path = mesh_of(self.folder, self.scene(MAPPED))
         out, _ = self.call("run", self.scene(MAPPED), "--set", path, "--output", "out")
         r = self.results()
@@ -54,7 +56,7 @@ class Fractures(ProgramTest):
         self.assertEqual([float(row["mean_slip [m]"]) for row in table], last["mean_slip"])
 
     def test_moment_and_totals(self):
-        """The moment is G times slip times area; a set has the sums and means of its fractures."""
+        """The moment is G times slip times area. Sets have the sums and means of their fractures."""
         r = self.run_mapped()
         areas = [one["area"] for one in r["single_fractures"]]
         for step in r["steps"]:
@@ -65,12 +67,12 @@ class Fractures(ProgramTest):
             self.assertAlmostEqual(sum(a * s for a, s in zip(areas, each["mean_slip"])), sum(areas) * of_set["mean_slip"], delta=1e-12)
             self.assertEqual(max(each["max_slip"]), of_set["max_slip"])
             self.assertAlmostEqual(sum(each["area_slip"]), of_set["fraction_slip"] * of_set["area"], delta=1e-9)
-            self.assertNotIn("moment_magnitude", each)  # per metre of depth
+            self.assertNotIn("moment_magnitude", each)  # moments are per metre of depth
         self.assertGreater(of_set["moment"], 0)
         self.assertEqual((r["units"]["moment"], r["units"]["mean_slip"], r["units"]["area_slip"]), ("N", "m", "m"))
 
     def test_columns_are_entries_of_joints(self):
-        """A trace slips where its own friction is low; the material's holds where the cell is empty."""
+        """A trace with low own friction slips. Empty cells use the value of the material."""
         tendency = self.run_mapped("Time.steps=1")["steps"][0]["single_fractures"]["slip_tendency"]
         names = [one["name"] for one in self.results()["single_fractures"]]
         table = ROOT / "xml/networks/mapped.csv"
@@ -114,7 +116,9 @@ class Fractures(ProgramTest):
         self.assertIn('columns of fractures are passed over that are no entries of a joint: "geologist\'s remark"', err)
 
     def test_biaxial_and_triaxial_test(self):
-        """The joint slips from the load of Mohr and Coulomb on, which then stays, by what the platens move beyond it."""
+        """The joint slips at the load of Mohr and Coulomb, which then stays constant.
+
+        The slip takes up further displacement."""
         young, poisson, stiffness, height, confinement = 20e9, 0.2, 50e9, 0.125, 5e6
         mu, dilation, beta = math.tan(math.radians(30)), math.tan(math.radians(5)), math.atan(0.0866 / 0.05)
         rise = 2 * mu * confinement / ((1 - mu / math.tan(beta)) * math.sin(2 * beta))
@@ -148,7 +152,9 @@ class Fractures(ProgramTest):
                     self.assertAlmostEqual(one, other, delta=1e-8 * size, msg=key)
 
     def test_default_joint(self):
-        """Fractures without a section have it; a section may leave its material out; without one it is missing."""
+        """Fractures without a section, or without a material in it, use the default joint.
+
+        Without one there is an error."""
         crossing = "verification/crossing_2d.xml"
         before = self.run_scene(crossing, "Output.vtu=false")["steps"][-1]["fractures"]
         names = sorted(before)
@@ -166,7 +172,7 @@ class Fractures(ProgramTest):
         self.assertIn(f'Fractures > {names[0]} > "material": missing; it is required', err)
 
     def test_strike_and_dip(self):
-        """As the scene gives them; sections are called by their sets and names."""
+        """Strike and dip are those of the scene. Names contain the set and the section."""
         scene = "networks/shapes_3d.xml"
         path = mesh_of(self.folder, self.scene(scene), "Mesh file.network.relative size=0.5")
         r = self.run_scene(scene, path, "Output.vtu=false", "Time.schedule={1e-3}")
@@ -177,7 +183,7 @@ class Fractures(ProgramTest):
         self.assertAlmostEqual(steep["area"], math.pi * 3 * 2, delta=1e-6)
 
     def test_magnitude_in_three_dimensions(self):
-        """2/3 (log10 M0 - 9.1), absent where nothing has slipped."""
+        """Magnitude is 2/3 (log10 M0 - 9.1), and absent without slip."""
         r = self.run_scene("verification/regimes_3d.xml", "Output.vtu=false")
         seen = 0
         for step in r["steps"]:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The launcher ./sprekk: launcher_test.py PROGRAM ROOT MPIEXEC
+"""Launcher ./sprekk: launcher_test.py PROGRAM ROOT MPIEXEC
 
-A copy of it, where building is replaced: words go to the program, statuses come back, wrong words are refused."""
+Tests a copy with mock builds: arguments reach the program, exit statuses return, invalid arguments are rejected."""
 import fcntl
 import os
 import re
@@ -64,7 +64,7 @@ class Launcher(ProgramTest):
                         "--set", "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", expect=3)
 
     def test_interrupted(self):
-        """Ctrl-C reaches all processes of the terminal's group. A second one ends a step that takes long."""
+        """Ctrl-C goes to the process group of the terminal. A second one stops a long step."""
         for ranks, cells, times, status in (("1", "{2, 2}", 1, 4), ("2", "{2, 2}", 1, 4), ("2", "{400, 400}", 2, 1)):
             with self.subTest(ranks=ranks, cells=cells):
                 run = subprocess.Popen(["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out", "--set",
@@ -108,7 +108,7 @@ class Launcher(ProgramTest):
                 self.assertEqual(out, "")
                 self.assertTrue(err)
         self.assertIn("absent.xml: there is no such file", self.launch("run", "absent.xml", expect=1)[1])
-        self.assertFalse((self.folder / "build/build.log").exists())  # none of this builds
+        self.assertFalse((self.folder / "build/build.log").exists())  # no builds
 
     def test_help_names_every_command(self):
         out, _ = self.launch("--help")
@@ -156,7 +156,7 @@ class Launcher(ProgramTest):
         self.assertRegex(err, "build cannot be written; it belongs to .*\n.*build/apps/sprekk/sprekk, or copy the tree")
 
     def test_network_beside_another_run(self):
-        """A run makes its mesh in its directory, which must be free for that already."""
+        """The mesh is generated in the output directory, which must not be in use."""
         shutil.copy(ROOT / "xml/networks/outcrop_2d.xml", self.folder)
         maker = self.folder / "apps/mesh/__main__.py"
         maker.parent.mkdir(parents=True)
@@ -193,7 +193,7 @@ class Launcher(ProgramTest):
             self.assertIn(f'{command} has no option "--quiet"', self.launch(command, PUSH, "--quiet", expect=2)[1])
 
     def test_run_goes_on_when_its_reader_ends(self):
-        """mpirun would end it after some lines that nobody reads."""
+        """mpirun would end the run when its output is closed."""
         for ranks in ("1", "2"):
             words = ["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out", "--set", "Output.vtu=false", "--set", "Time.steps=40"]
             with subprocess.Popen(words, stdout=subprocess.PIPE, **self.surroundings) as run:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Lists that a scene hands to Trilinos and MUMPS: library_lists_test.py PROGRAM ROOT MPIEXEC
+"""Parameter lists for Trilinos and MUMPS: library_lists_test.py PROGRAM ROOT MPIEXEC
 
-Unknown or invalid entries of a library's list end the run before the first step, with one message that names the place in the scene;
-what it takes stays as it is."""
+Unknown or invalid entries of a library end the run before the first step, with one message and the place in the scene.
+Valid entries take effect."""
 from program import ProgramTest, main
 
 PUSH = "seed/push_2d.xml"

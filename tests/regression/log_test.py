@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The log of a run, on standard output and in log.txt: log_test.py PROGRAM ROOT MPIEXEC"""
+"""Log of a run on standard output and in log.txt: log_test.py PROGRAM ROOT MPIEXEC"""
 import re
 import subprocess
 
@@ -31,7 +31,7 @@ class Log(ProgramTest):
             self.assertEqual(len(lines), len(set(lines)), out)
 
     def test_quiet(self):
-        """Nothing on standard output; warnings are on standard error and in the file."""
+        """With --quiet standard output is empty. Warnings are on standard error and in the file."""
         for ranks in (1, 2):
             out, err = self.call("run", self.scene(PUSH), "--output", "out", "--quiet", "--set",
                                  "Materials.joint.friction coefficient=3", *QUIET, ranks=ranks)
@@ -50,7 +50,7 @@ class Log(ProgramTest):
         self.assertRegex(quiet, r"^factor of safety: \d")
 
     def test_standard_output_on_a_full_disk(self):
-        """The results are there; that the print is not, is told."""
+        """The results are complete, and a message reports incomplete standard output."""
         for words in (["run", self.scene(PUSH), "--output", "out", *QUIET], ["reference"], ["safety", self.scene("slopes/plane_2d.xml"), "--tolerance", "0.5"],
                       ["point", self.scene("point/cyclic_shear.xml")]):
             with open("/dev/full", "w") as full:
@@ -82,7 +82,7 @@ class Log(ProgramTest):
             self.assertEqual(err, "sprekk: out/log.txt: cannot be written: No space left on device\n")
 
     def test_errors_are_in_the_file(self):
-        """Of a run whose directory is there."""
+        """log.txt contains errors if its directory exists."""
         for ranks in (1, 2):
             _, err = self.call("run", self.scene(PUSH), "--output", "out", "--set", "Boundary conditions.moved.displacement={0, -sqrt(2.5-t)}",
                                "--set", "Time.end=4", "--set", "Time.steps=4", *QUIET, ranks=ranks, expect=1)
@@ -103,7 +103,7 @@ class Log(ProgramTest):
         self.assertIn("results in out", self.log())
 
     def test_lines_arrive_while_the_run_goes_on(self):
-        """And not when a buffer is full, which takes some 40 steps."""
+        """Lines appear after each step, without a buffer, which would hold about 40 steps."""
         words = [program.PROGRAM, "run", self.scene(PUSH), "--output", "out", *QUIET, "--set", "Mesh.cells={60, 60}", "--set",
                  "Time.end=1000", "--set", "Time.steps=1000"]
         for launcher in ([], [program.MPIEXEC, "--quiet", "--oversubscribe", "--bind-to", "none", "-np", "2"]):

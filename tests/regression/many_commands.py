@@ -1,4 +1,4 @@
-"""Runs many commands of the program in one process, which commands/commands.cpp is."""
+"""Executes many commands of the program in one process, by commands/commands.cpp."""
 import os
 import select
 import subprocess
@@ -22,7 +22,7 @@ class ManyCommands:
                                       for name in ("in", "status"))
 
     def call(self, folder, *words):
-        """Status, standard output and standard error of a command that runs in the folder."""
+        """Returns status, standard output and standard error of a command in the folder."""
         line = "".join(f"{word}\t" for word in (folder, *words)) + "\n"
         for pipe in self.inputs:
             pipe.write(line.encode())

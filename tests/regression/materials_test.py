@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The material library: materials_test.py PROGRAM ROOT MPIEXEC"""
+"""Material library: materials_test.py PROGRAM ROOT MPIEXEC"""
 import csv
 import math
 import re
@@ -13,13 +13,13 @@ ROCK, JOINT = "Bulk.material=", "Fractures.fracture.material="
 
 
 def told(results):
-    """What does not depend on the clock, the folder or the materials' names."""
+    """Returns the results that do not depend on the clock, the folder or the names of materials."""
     return {key: results[key] for key in ("status", "steps")}
 
 
 class Materials(ProgramTest):
     def library(self, kind):
-        """{name: {entry: value}}, from the printed tables, without names of laws."""
+        """Returns {name: {entry: value}} of the printed tables, without names of laws."""
         sets = {}
         for line in self.call("materials")[0].splitlines():
             cells = [cell.strip() for cell in line.split("|")[1:-1]]
@@ -30,7 +30,7 @@ class Materials(ProgramTest):
         return sets
 
     def entries_of(self, path):
-        """{material: {entry: text}} of a scene file."""
+        """Returns {material: {entry: text}} of a scene file."""
         materials = ElementTree.parse(path).getroot().find("ParameterList[@name='Materials']")
         return {m.get("name"): {p.get("name"): p.get("value") for p in m} for m in materials}
 
@@ -43,7 +43,7 @@ class Materials(ProgramTest):
                     self.call("check", self.scene(PUSH), "--set", place + name)
 
     def test_dilation_by_an_angle_above_friction_is_refused(self):
-        """Mobilised friction is 0 where slip begins; dilation by an angle would let slip do work there."""
+        """Dilation by an angle is rejected: mobilised friction is 0 at slip onset, and slip would create energy."""
         scene, joint = self.scene("point/shear_tests.xml"), "Materials.joint."
         sets = [word for entry in ("dilation=constant angle", "dilation angle=5") for word in ("--set", joint + entry)]
         err = self.call("point", scene, *sets, expect=1)[1]
@@ -54,7 +54,7 @@ class Materials(ProgramTest):
         self.call("point", scene)
 
     def test_rocks_are_rocks(self):
-        """Densities, and speeds of compression waves, as rocks have them."""
+        """Densities and compressional wave speeds are realistic."""
         for name, rock in self.library("elastic").items():
             if name == "Wollmann rock":
                 continue
@@ -68,7 +68,7 @@ class Materials(ProgramTest):
                 self.assertTrue(1500 <= math.sqrt((K + 4 * G / 3) / rock["density"]) <= 7500, rock)
 
     def test_pores_of_grains_of_one_mineral(self):
-        """Those at constant strain grow by (alpha - phi)/K_s, K_s = K/(1 - alpha), with a fluid's pressure."""
+        """Pore compressibility at constant strain is (alpha - phi)/K_s with K_s = K/(1 - alpha), for one mineral."""
         n = 0
         for name, rock in self.library("elastic").items():
             if "Biot coefficient" in rock:
@@ -85,7 +85,7 @@ class Materials(ProgramTest):
             rock = rocks[name]
             self.assertAlmostEqual(math.sqrt((rock["Lame's first parameter"] + 2 * rock["shear modulus"]) / rock["density"]), compression, delta=0.1)
             self.assertAlmostEqual(math.sqrt(rock["shear modulus"] / rock["density"]), shear, delta=0.1)
-        K, G = rocks["claystone"]["bulk modulus"], rocks["claystone"]["shear modulus"]  # the source has E and nu, too
+        K, G = rocks["claystone"]["bulk modulus"], rocks["claystone"]["shear modulus"]  # with E and nu in the source
         self.assertAlmostEqual(9 * K * G / (3 * K + G), 6.1065e9, delta=1e5)
         self.assertAlmostEqual((3 * K - 2 * G) / (6 * K + 2 * G), 0.3275, delta=1e-6)
         self.assertAlmostEqual(rocks["tonalite"]["Young's modulus"], 3.0e6 * 6894.757, delta=0.05e9)  # psi
@@ -100,7 +100,7 @@ class Materials(ProgramTest):
         self.assertAlmostEqual(joint["maximum closure"], closure * 1e-3, delta=1e-10)
 
     def test_rough_joints(self):
-        """As measured, with the aperture that the regressions of closure take for joints of fresh rock."""
+        """Roughness is as measured. Apertures are those of the closure regressions for fresh joints."""
         rough = {name: joint for name, joint in self.library("joint").items() if "joint roughness coefficient" in joint}
         measured = {15.32, 14.63, 1.96, 1.19, 15.6, 12.1, 4.23}
         self.assertEqual({joint["joint roughness coefficient"] for joint in rough.values()}, measured)
@@ -122,7 +122,7 @@ class Materials(ProgramTest):
     def test_effective_input_has_the_set_in_full(self):
         first = self.run_scene(PUSH, ROCK + "claystone", JOINT + "claystone fault", output="first")
         entries = self.entries_of(self.folder / "first" / "effective_input.xml")
-        self.assertEqual(set(entries), {"rock", "joint", "claystone", "claystone fault"})  # used or defined, no others
+        self.assertEqual(set(entries), {"rock", "joint", "claystone", "claystone fault"})  # used or defined
         self.assertEqual(float(entries["claystone"]["bulk modulus"]), 5.9e9)
         self.assertEqual(float(entries["claystone fault"]["initial aperture"]), 1e-5)
         self.assertIn("DECOVALEX", entries["claystone"]["source"])
@@ -143,7 +143,7 @@ class Materials(ProgramTest):
         rows = list(csv.DictReader(out.splitlines()))
         self.assertEqual([float(row["traction_n"]) for row in rows][-4:], [-2.5e6, -5e6, -7.5e6, -10e6])
         stiffness, closure = 20.35e9, 6.133625e-5
-        for row in rows:  # the hyperbola of Bandis, Lumsden and Barton (1983)
+        for row in rows:  # hyperbola of Bandis, Lumsden and Barton (1983)
             shut = -float(row["jump_n"])
             self.assertAlmostEqual(-float(row["traction_n"]), stiffness * shut / (1 - shut / closure), delta=1)
 

@@ -1,4 +1,4 @@
-"""Makes the mesh of a scene's network, as `./sprekk run` does before it runs."""
+"""Generates the mesh of a network scene, as `./sprekk run` does before the run."""
 import importlib.util
 import sys
 
@@ -11,7 +11,7 @@ spec.loader.exec_module(mesh_app)
 
 
 def mesh_of(folder, scene, *sets):
-    """The override that names the mesh to a run."""
+    """Generates the mesh; returns the override with its path."""
     path = folder / "network.msh"
     words = [word for entry in sets for word in ("--set", entry)]
     status = mesh_app.main([str(scene), "-o", str(path), "--program", str(PROGRAM), "--quiet", *words])

@@ -1,5 +1,6 @@
-"""What paraview.py uses of paraview.simple, on VTK's own readers and filters: it fails on names that ParaView's proxies or
-the data do not have. The views keep what they show."""
+"""Mock of the members of paraview.simple in paraview.py, with readers and filters of VTK.
+
+It fails for names that ParaView's proxies or the data do not have. Views record their displays."""
 import read
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
 from vtkmodules.vtkFiltersGeneral import vtkTableBasedClipDataSet, vtkWarpVector
@@ -10,7 +11,7 @@ __all__ = ["PVDReader", "WarpByVector", "Clip", "Show", "ColorBy", "Render", "Ge
 
 
 class Proxy:
-    """Its class lists the properties, others cannot be set."""
+    """Proxy with the properties listed by its class. Others cannot be set."""
     properties = ()
 
     def __init__(self, registrationName="", **values):
@@ -27,7 +28,7 @@ class PVDReader(Proxy):
     properties = ("FileName",)
 
     def output(self):
-        """The grid of the last step."""
+        """Returns the grid of the last step."""
         directory, _, file = self.FileName.rpartition("/")
         return read.grid(read.written_steps(directory, file[:-len(".pvd")])[-1][1])
 
@@ -56,7 +57,7 @@ class Clip(Proxy):
         super().__init__(ClipType=Plane(), **values)
 
     def output(self):
-        """What is behind the plane, which is ParaView's default."""
+        """Returns the part behind the plane, ParaView's default."""
         plane, clip = vtkPlane(), vtkTableBasedClipDataSet()
         plane.SetOrigin(self.ClipType.Origin)
         plane.SetNormal(self.ClipType.Normal)
@@ -106,7 +107,7 @@ class AnimationScene(Proxy):
 
 
 def values(source, array):
-    """Of an array, (POINTS or CELLS, name), that the source has."""
+    """Returns the values of an array, (POINTS or CELLS, name), of a source."""
     data = source.output()
     return read.arrays({"POINTS": data.GetPointData, "CELLS": data.GetCellData}[array[0]]())[array[1]]
 

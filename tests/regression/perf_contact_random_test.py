@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random scenes of perf/contact: perf_contact_random_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy, SciPy, VTK or gmsh.
 
-Limit analysis against loads whose limit is known; the same scenes for the same seed; what is judged to be a failure."""
+Tests limit analysis with known limit loads, equal scenes for equal seeds, and the criteria for failures."""
 import io
 import math
 import subprocess
@@ -33,7 +33,7 @@ SOUTH, NORTH, WEST, EAST = ({"boundary": side, "displacement": [0.0, 0.0]} for s
 
 
 def read(tree):
-    """A scene, as it is read from a file."""
+    """Returns the scene as read from a file."""
     return violation.Input(io.StringIO(xml.tostring(scene_file.section("Sprekk", tree), encoding="unicode")))
 
 
@@ -56,7 +56,7 @@ def stands(input_, time=0):
 
 class LimitAnalysis(unittest.TestCase):
     def incline(self, angle, friction, height=1.2, **more):
-        """A block of length 2 on a base that is turned."""
+        """Returns whether a block of length 2 on an inclined base stands."""
         mesh = box([2.0, height], [8, 2], ([0.0, height / 2], [2.0, height / 2]), rotation=angle)
         return stands(scene(mesh, friction, [SOUTH], **more))
 
@@ -67,13 +67,13 @@ class LimitAnalysis(unittest.TestCase):
             self.assertFalse(self.incline(angle, 0.999 * limit))
 
     def test_a_slender_block_falls_over(self):
-        """About the centre of the outermost face, 7/8 of half its length away from the middle."""
-        limit = 2 * math.degrees(math.atan(1))  # height of the block, at which it falls at 45 degrees: 7/8 * 2
+        """A slender block topples about the centre of the outermost face, at 7/8 of half its length."""
+        limit = 2 * math.degrees(math.atan(1))  # height of a block that topples at 45 degrees: 7/8 * 2
         self.assertTrue(self.incline(limit / 2, 2, height=2 * 0.999 * 7 / 4))
         self.assertFalse(self.incline(limit / 2, 2, height=2 * 1.001 * 7 / 4))
 
     def test_slopes_in_space(self):
-        """Edges of the cone lie on it: between them friction is less by up to 1 - cos(pi/32)."""
+        """The friction cone has 32 edges on it. Between them the friction is smaller by up to 1 - cos(pi/32)."""
         for cell, faces in (("hexahedron", 4), ("tetrahedron", 8)):
             for turn in (0, 33):
                 axis = [math.cos(math.radians(turn)), math.sin(math.radians(turn)), 0.0]
@@ -106,12 +106,12 @@ class LimitAnalysis(unittest.TestCase):
         load = {"boundary": "north", "traction": ["-q(t)", "-(1 + 0*x)"]}
         tree = scene(halves, 0.5, [SOUTH, load])
         tree.root.append(scene_file.section("Tables", {"q": {"arguments": [0.0, 1.0], "values": [0.0, 1.0]}}))
-        # the weight of the block is 0.5, so that it slides at 0.75; a resultant within the middle half does not turn it
+        # the weight 0.5 causes sliding at 0.75; a resultant within the middle half does not rotate the block
         self.assertTrue(stands(tree, 0.2))
         self.assertFalse(stands(tree, 0.76))
 
     def test_fluid_pressure_lifts(self):
-        """The weight of the upper half is 0.6 per length; on a slope, friction knows of the effective traction alone."""
+        """The weight of the upper half is 0.6 per length. On a slope friction depends on the effective traction."""
         for pressure, expected in (("0.59", True), ("0.61", False)):
             self.assertEqual(self.incline(0, 0.5, **{"fluid pressure": pressure}), expected)
         limit = 0.6 * (math.cos(math.radians(20)) - math.sin(math.radians(20)) / 0.6)
@@ -119,7 +119,9 @@ class LimitAnalysis(unittest.TestCase):
             self.assertEqual(self.incline(20, 0.6, **{"fluid pressure": factor * limit}), factor < 1)
 
     def arch(self, thickness, friction, stones=60, across=20):
-        """A semicircle of mean radius 1 on two stones that are held, its stones cut into cells across the thickness."""
+        """Returns whether a semicircular arch with mean radius 1 stands on two fixed stones.
+
+        Stones are cut across the thickness."""
         radii = np.linspace(1 - thickness / 2, 1 + thickness / 2, across + 1)
         angles, stones = math.pi * np.arange(-1, stones + 2) / stones, stones + 2
         points = np.stack([np.outer(np.cos(angles), radii), np.outer(np.sin(angles), radii)], -1).reshape(-1, 2)
@@ -136,14 +138,14 @@ class LimitAnalysis(unittest.TestCase):
         return limit_analysis.admissible(input_, rock, 0)
 
     def test_an_arch_needs_a_tenth_of_its_radius(self):
-        """A semicircular arch stands from a thickness of 0.1075 of its mean radius on (Milankovitch 1907, Cocchetti 2011)."""
+        """A semicircular arch needs a thickness of 0.1075 of its mean radius (Milankovitch 1907, Cocchetti 2011)."""
         for effective, expected in ((0.107, False), (0.108, True)):
-            # the outermost centres of faces are 19/20 of the thickness apart
+            # the outermost centres of faces have a distance of 19/20 of the thickness
             self.assertEqual(self.arch(effective * 20 / 19, 2), expected)
-        self.assertFalse(self.arch(0.2, 0.3))  # it slides below 0.31 to 0.4
+        self.assertFalse(self.arch(0.2, 0.3))  # it slides for friction below 0.31 to 0.4
 
     def test_pieces_of_a_network(self):
-        """Two triangles, cut or not."""
+        """Two triangles, separated by a fracture or not."""
         points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
         cells = np.array([[0, 1, 2], [0, 2, 3]])
         facets = np.stack([np.delete(cells, i, axis=1) for i in range(3)], axis=1)
@@ -163,7 +165,9 @@ class Drawing(ProgramTest):
         self.assertEqual({one.name.rsplit("-", 1)[0] for one in drawn}, set(random_scenes.families()))
 
     def test_files_are_the_same_and_can_be_read(self):
-        """Of the first scene of each family; limit analysis reads the same mesh of a network as the program."""
+        """The first scene of each family is reproducible and valid.
+
+        Limit analysis and the program read the same mesh."""
         first = {}
         for k in range(300):
             first.setdefault(random_scenes.draw_scene(3, k).name.rsplit("-", 1)[0], k)
@@ -186,7 +190,7 @@ class Drawing(ProgramTest):
 
 class Verdicts(ProgramTest):
     def verdict(self, status, friction, time=0.0, end=1.0):
-        """Of a run of the clamped middle that ended so after the step to `time`."""
+        """Returns the verdict on a run of the clamped block that ended with `status` after the step to `time`."""
         mesh = box([3.0, 1.0], [3, 2], ([1.0, 0.0], [1.0, 1.0]), ([2.0, 0.0], [2.0, 1.0]))
         input_ = scene(mesh, friction, [WEST, EAST])
         input_.root.append(scene_file.section("Time", {"end": end, "steps": 2}))

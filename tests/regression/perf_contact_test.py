@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The measurement perf/contact: perf_contact_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+"""Measurement perf/contact: perf_contact_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
 
-Runs that are right have no violation; states that are wrong in a known way have the violation that follows."""
+Correct runs have no violations. States with known errors have the corresponding violations."""
 import copy
 import subprocess
 import sys
@@ -23,7 +23,7 @@ except ImportError as error:
 
 class Violation(ProgramTest):
     def steps(self, name, *overrides):
-        """Each step with the one before it, and the scales."""
+        """Returns pairs of consecutive steps; also sets the scales."""
         results = self.run_scene(name, *overrides)
         self.input = violation.Input(self.folder / "out/effective_input.xml")
         steps, self.scales, worst, skipped = violation.largest(self.folder / "out", results, self.input)
@@ -32,7 +32,7 @@ class Violation(ProgramTest):
         return steps
 
     def parts(self, step, before, **changes):
-        """The violation with some arrays replaced."""
+        """Returns the violations after replacement of some arrays."""
         step = copy.deepcopy(step)
         for name, value in changes.items():
             getattr(step, name)[:] = value
@@ -41,7 +41,7 @@ class Violation(ProgramTest):
     def test_a_wrong_state_is_seen_by_the_part_that_it_violates(self):
         stick, slip, opened, _ = self.steps("contact/all_change_3d.xml")
         length, traction = self.scales.length, self.scales.traction
-        self.assertAlmostEqual(length, np.hypot(0.5, 0.1), places=12)  # of the top, in the step that slips
+        self.assertAlmostEqual(length, np.hypot(0.5, 0.1), places=12)  # of the top, in the step with slip
         deeper = self.parts(slip, stick, distance=slip.distance - 0.01)
         self.assertAlmostEqual(deeper["penetration"], 0.01 / length)
         gap = self.parts(slip, stick, distance=slip.distance + 0.01)
@@ -77,7 +77,7 @@ class Violation(ProgramTest):
         return violation.JointLaw(lambda name, default: entries.get(name, default), lambda role: kinds.get(role) or violation.FIRST_KINDS[role])
 
     def faces(self, load, slip=0.0, **told):
-        """One face under compression that has slipped."""
+        """Returns one face under compression with slip."""
         row = np.array([[-load, 0.0]])
         return violation.Faces(1, row, np.zeros(1), np.array([2]), row, np.array([[0.0, slip]]), row, np.zeros(1),
                                {name.replace("_", " "): np.array([value]) for name, value in told.items()})
@@ -117,7 +117,7 @@ class Violation(ProgramTest):
         worn.told["damage history"] += 0.01
         self.assertAlmostEqual(history(worn), 0.01 / self.scales.length, places=4)
         worn.told["damage history"] -= 0.01
-        worn.plastic[:, 1:] += 0.001  # a step that the history does not know of
+        worn.plastic[:, 1:] += 0.001  # a slip increment without a history
         self.assertGreater(history(worn), 1e-4 / self.scales.length)
 
     def test_open_faces_wear_only_where_they_touch(self):
@@ -137,14 +137,14 @@ class Violation(ProgramTest):
         one = self.steps("contact/all_change_2d.xml")
         other = copy.deepcopy(one)
         self.assertEqual(violation.differing(one, other, self.scales), [])
-        other[1].state[0] = violation.STICK  # where it slips: on the limit
+        other[1].state[0] = violation.STICK  # at a sliding face: near the limit
         (found,) = violation.differing(one, other, self.scales)
         self.assertEqual((found[0], found[2], found[4]), (2.0, (violation.SLIP, violation.STICK), True))
-        other[0].state[1] = violation.SLIP  # where it sticks: far from it
+        other[0].state[1] = violation.SLIP  # at a sticking face: far from it
         self.assertEqual([near for *_, near in violation.differing(one, other, self.scales)], [False, True])
 
     def test_exact_column(self):
-        """Rows of the table of a block whose law closes and dilates: H = G = lambda = 1, computed with 60 digits."""
+        """Solution for a block with closure and dilation, H = G = lambda = 1, compared with results of 60 digits."""
         class R1:
             stiffness, friction, dilation, gap, closure, normal_stiffness = 2, 0.6, np.tan(np.radians(10)), 0.01, 0.1, 5
             closed_gap = violation.Joint.closed_gap
@@ -155,14 +155,14 @@ class Violation(ProgramTest):
                                 ((0.3, 0.05), 0, (2, 0.011301447522, -0.018835745870, 0.283047828717, 0.056278581957)),
                                 ((0.35, -0.1), 0.209312864497, (1, 0.093791423668, -0.322985706114, 0.209312864497, 0.007661902038))):
             self.assertTrue(np.allclose(exact.column(R1(), rock, 1, *d, slipped), row, rtol=0, atol=2e-12), (d, row))
-        # under a fluid pressure p, with k_n = 3: the same as with a top that is p/k_n higher
+        # a fluid pressure p with k_n = 3 has the same effect as a top displacement larger by p/k_n
         for p, row in ((0.05, (1, 0.1, -0.195631429996, 0, -0.018122856668)),
                        (0.2, (2, 0.063729626370, -0.106216043949, 0.054405560446, 0.002072014650)),
                        (0.45, (0, 0, 0, 0.15, 0.05))):
             self.assertTrue(np.allclose(exact.column(R1(), rock, 1, 0.15, -0.1 + p / 3, 0), row, rtol=0, atol=2e-12), (p, row))
 
     def test_fluid_pressure_is_in_the_scale(self):
-        """Pressed open, the block has no traction on its fracture."""
+        """An open fracture has no contact traction. The scale includes the fluid pressure."""
         open_faces, = self.steps("contact/block_2d.xml", "Fractures.fracture.fluid pressure=2*y")
         self.assertEqual(set(open_faces.state), {violation.OPEN})
         self.assertTrue(np.allclose(open_faces.pressure, 1))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random scenes of perf/coupled: perf_coupled_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
 
-The same scenes for the same seed; balances that are known to be exact; files that are wrong are seen to be."""
+Tests equal scenes for equal seeds, exact balances, and the detection of wrong files."""
 import subprocess
 import sys
 
@@ -31,7 +31,7 @@ ROCK = {"type": "elastic", "Young's modulus": 2e10, "Poisson's ratio": 0.2, "per
 
 
 def doublet(cell, **entries):
-    """Cold water into a fracture, warm water out of a side that is open, in rock that deforms under a stress."""
+    """Returns a scene with injection of cold water into a fracture, an open side, and deformable rock under stress."""
     sides = {name: {"boundary": name, "displacement": [0.0, 0.0]} for name in ("west", "east", "south", "north")}
     sides["east"] |= {"pressure": 5e6, "temperature": 350.0}
     lines = {"f": {"lower corner": [20.0, 50.0], "upper corner": [80.0, 50.0]}, "g": {"lower corner": [50.0, 30.0], "upper corner": [50.0, 70.0]}}
@@ -66,7 +66,7 @@ class Coupled(ProgramTest):
         self.assertEqual({one.loads for one in drawn}, set(coupled_scenes.PHYSICS))
 
     def test_balances_are_exact(self):
-        """Of fluid and energy, in steps of both schemes; with a Biot coefficient of fluid alone."""
+        """Balances of fluid and energy are exact for both schemes; with a Biot coefficient only that of fluid."""
         for cell, scheme, biot, kind in (("triangle", "implicit Euler", 0.0, "constant"), ("quadrilateral", "BDF2", 0.0, "water"),
                                          ("quadrilateral", "implicit Euler", 0.8, "constant")):
             more = {"Heat.fluid": kind} | ({"Heat.fluid thermal expansion": 0.0, "Heat.reference temperature": 350.0} if kind == "water" else {})
@@ -85,7 +85,7 @@ class Coupled(ProgramTest):
         self.assertLess(fluid, 1e-6)
 
     def test_energy_is_in_balance_in_undrained_steps(self):
-        """A pressure and a temperature change at a side; next to nothing flows by Darcy's law."""
+        """Pressure and temperature change at a side in short steps, with negligible Darcy flow."""
         for cell, scheme in (("triangle", "implicit Euler"), ("quadrilateral", "BDF2")):
             tree = doublet(cell, **{"Materials.rock.Biot coefficient": 0.8, "Time.schedule": [100.0, 200.0, 300.0], "Time.scheme": scheme})
             tree["Boundary conditions"]["east"] |= {"pressure": 6e6, "temperature": 320.0}
@@ -115,11 +115,11 @@ class Coupled(ProgramTest):
         self.assertEqual(checks.temperatures(run, "warning: scene.xml: temperatures are more than 10 K beyond the given ones, 300 to 310 K")[0], [])
 
     def again(self, run):
-        """The run as it was written."""
+        """Returns the run as read from its files."""
         return Written(run.directory, program_run.json.loads((run.directory / "results.json").read_text()))
 
     def test_differences(self):
-        """Renamed fractures and other ranks are the same; a change of 1e-7 is none of rounding."""
+        """Renamed fractures and other numbers of ranks agree. A relative change of 1e-7 is detected."""
         one = self.ran(doublet("triangle"))
         tree = doublet("triangle")
         for path in ("Mesh.fractures", "Fractures"):
@@ -137,7 +137,7 @@ class Coupled(ProgramTest):
         self.assertIn('"pressure" at t = 200000', what)
 
     def test_sizes_and_boundaries_of_cells(self):
-        """Every kind of cell: the volume of the box, and that which a stretch of it sweeps."""
+        """For each cell type: volume of the box, and the volume swept by an extension."""
         for cell, dim in (("triangle", 2), ("quadrilateral", 2), ("tetrahedron", 3), ("hexahedron", 3)):
             for order in (1, 2):
                 mesh = {"cell": cell, "lower corner": [0.0] * dim, "upper corner": [2.0, 1.0, 3.0][:dim], "cells": [2, 3, 2][:dim], "order": order}

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The measurement perf/networks: perf_networks_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+"""Measurement perf/networks: perf_networks_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
 
-Of runs that are right forces, moments and energy are in balance; of results that are wrong in a known way they are not."""
+Forces, moments and energy are in balance for correct runs. Wrong results have the corresponding defects."""
 import sys
 
 from program import ROOT, ProgramTest, main
@@ -24,19 +24,19 @@ class Balance(ProgramTest):
         return balance.budget(self.folder / "out", self.told)
 
     def test_energy_is_in_balance_but_for_what_is_stated(self):
-        """Without closure all is linear but for the traction at which faces slide, so the late heat is all of the defect."""
+        """Without closure the late heat of faces that begin to slide in a step is the only defect of the energy."""
         for scene, cell in CASES:
             for steps in (8, 16):
                 b = self.budget(scene, cell, f"Time.steps={steps}")
                 self.assertLess(b.balance, 1e-12)
                 rest = b.work - b.strain - b.stored - b.heat + b.late
                 self.assertLess(abs(rest).max(), 1e-12 * b.work[-1])
-                self.assertGreater(b.heat[-1], 0.05)  # friction 0.6, load 0.3, slid by some tenths to and fro
+                self.assertGreater(b.heat[-1], 0.05)  # friction 0.6, load 0.3, cyclic slip of some tenths
                 self.assertGreater(b.least_heat, -1e-14)
             self.assertGreater(b.late[-1], 1e-3 * b.heat[-1])
 
     def test_heat_of_a_known_path(self):
-        """Cyclic shear of a unit area at constant load: the steps that slide turn 0.18 times the slip into heat, others nothing."""
+        """Cyclic shear of a unit area at constant load: heat is 0.18 times the slip in sliding steps, else 0."""
         b = self.budget(*CASES[0])
         slips = [step["fractures"]["fracture"]["mean_plastic_jump"]["local"][1] for step in self.told["steps"]]
         slides = np.array([0, 1, 0, 0, 1, 0, 1, 0])

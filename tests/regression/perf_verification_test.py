@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The measurement perf/verification: perf_verification_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+"""Measurement perf/verification: perf_verification_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
 
-Its exact solutions obey the equations, its scenes prescribe them, and what it calls an error is one."""
+The exact solutions satisfy the equations. The scenes prescribe them. The computed errors are correct."""
 import subprocess
 import sys
 from pathlib import Path
@@ -29,7 +29,7 @@ REGIMES = ("stick", "slip", "mixed", "uniform")
 
 
 def stress(known, points, lam, G, h=STEP):
-    """[point, i, j] of a displacement, by central differences."""
+    """Returns the stress [point, i, j] of a displacement, by central differences."""
     d = points.shape[1]
     gradient = np.stack([(known.displacement(points + h * e)[:, :d] - known.displacement(points - h * e)[:, :d]) / (2 * h)
                          for e in np.eye(d)], axis=2)
@@ -37,7 +37,7 @@ def stress(known, points, lam, G, h=STEP):
 
 
 def force(known, points, lam, G, h=1e-3):
-    """-div of the stress."""
+    """Returns -div of the stress."""
     return -sum((stress(known, points + h * e, lam, G) - stress(known, points - h * e, lam, G))[:, :, k] / (2 * h)
                 for k, e in enumerate(np.eye(points.shape[1])))
 
@@ -119,7 +119,7 @@ class Exact(ProgramTest):
         self.assertAlmostEqual(column.pressure(np.array([0.5]), 1e-6)[0], column.undrained, places=6)
         rock, x = plate.rock, (np.arange(2000) + 0.5) / 2000 * plate.a
         for t in (50.0, 2000.0):
-            def strains(at, when):  # along x, in which there is no total stress, and y
+            def strains(at, when):  # along x, without total stress, and along y
                 along_y = plate.approach(when) / plate.b
                 return (rock.alpha * plate.pressure(at, when) - rock.lam * along_y) / rock.M, along_y
             along_x, along_y = strains(x, t)
@@ -145,7 +145,7 @@ class Exact(ProgramTest):
             rock = {name: float(value) for name, value in manufactured.ROCK.items()}
 
             def slopes(function):
-                """[point, ..., k], at t = 1."""
+                """Returns the gradient [point, ..., k] at t = 1."""
                 return np.stack([(function(x + h * e) - function(x - h * e)) / (2 * h) for e in np.eye(d)], axis=-1)
             u, force, p, source = manufactured.poro(d)
             at = {**functions, "t": 1, **dict(zip("xyz", x.T))}
@@ -164,14 +164,16 @@ class Exact(ProgramTest):
                 return np.exp(rock["compressibility"] * t * known.pressure(y))
 
             def mass(t):
-                """In the pores, but for what strain makes."""
+                """Returns the fluid mass in the pores, without the contribution of strain."""
                 return (rock["porosity"] + rock["growth"] * t * known.pressure(x)) * density(x, t)
             leaves = np.trace(slopes(lambda y: density(y)[:, None] * known.velocity(y)), axis1=1, axis2=2)
             stored = (mass(1 + h) - mass(1 - h)) / (2 * h) + rock["alpha"] * grows
             self.assertTrue(np.allclose(of(source), leaves + stored, atol=1e-4))
 
     def test_manufactured_heat_is_in_balance(self):
-        """In rock and in the fracture, at t = 0.8, by differences of what the scenes say; and they say what the exact solution does."""
+        """Heat in rock and fracture is in balance at t = 0.8, by differences.
+
+        The expressions of the scenes are correct."""
         try:
             import manufactured
         except ImportError as error:
@@ -220,7 +222,7 @@ class Exact(ProgramTest):
 
 class Scenes(ProgramTest):
     def run_case(self, make, name):
-        """The first run of a case on the mesh of its scene, with the exact solution."""
+        """Runs a case on the mesh of its scene; returns the first run, the case and its exact solution."""
         case = make()
         series = next(s for s in case.series if not s.scene or name in s.scene)
         return measure.start(program.PROGRAM, f"verification/{name}.xml", (), self.folder / name), case, series
@@ -235,7 +237,7 @@ class Scenes(ProgramTest):
             values = measure.vtk_to_numpy(run.rock.GetPointData().GetArray("displacement"))[:, :d]
             at = np.array([case.prescribed(p[None, :]) > 0 for p in points])
             if name.startswith("manufactured"):
-                at &= np.abs(points[:, -1] - 0.5) > 1e-9  # there both sides have a node
+                at &= np.abs(points[:, -1] - 0.5) > 1e-9  # these places have a node on both sides
             away = np.abs(values[at] - known.displacement(points[at])[:, :d]).max()
             self.assertGreater(at.sum(), 4)
             self.assertLess(away, 2e-8 * np.abs(values).max(), name)
@@ -245,7 +247,7 @@ class Scenes(ProgramTest):
         known = series.exact
 
         class Nodal:
-            """The computed field plus a tenth of it: the error relative to 1.1 of it is 1/11."""
+            """Computed field multiplied by 1.1: the relative error is 1/11."""
             def displacement(self, points):
                 return 1.1 * np.stack([points[:, 0] - 2 * points[:, 1], 3 * points[:, 1]], axis=1)
         points = measure.vtk_to_numpy(run.rock.GetPoints().GetData())
@@ -271,7 +273,7 @@ class Scenes(ProgramTest):
         run, case, series = self.run_case(cases.mms2d, "manufactured_stick_2d")
 
         class Stretched:
-            """u = (0.1 x, 0): the stress (lam + 2 G, lam, 0) 0.1, its energy over the unit square (lam + 2 G) 0.01."""
+            """u = (0.1 x, 0): stress 0.1 (lam + 2 G, lam, 0), energy (lam + 2 G) 0.01 in the unit square."""
             G, lam = series.exact.G, series.exact.lam
 
             def displacement(self, points):
@@ -284,7 +286,7 @@ class Scenes(ProgramTest):
         for d in (1, 2, 3):
             x, w = measure.simplex_rule(d)
             self.assertAlmostEqual(w.sum(), 1 / np.prod(np.arange(1, d + 1)), places=14)
-            exponents = np.arange(1, d + 1)  # of x^1 y^2 z^3: a! b! c!/(a + b + c + d)!
+            exponents = np.arange(1, d + 1)  # integral of x^1 y^2 z^3: a! b! c!/(a + b + c + d)!
             factorial = lambda n: float(np.prod(np.arange(1, n + 1)))
             value = np.prod([factorial(k) for k in exponents]) / factorial(exponents.sum() + d)
             self.assertAlmostEqual((w * np.prod(x**exponents, axis=1)).sum(), value, places=15)

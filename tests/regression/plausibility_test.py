@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Warnings of input that is allowed and hardly meant: plausibility_test.py PROGRAM ROOT MPIEXEC"""
+"""Warnings about implausible input: plausibility_test.py PROGRAM ROOT MPIEXEC"""
 import re
 
 from networks import mesh_of
@@ -30,7 +30,7 @@ class Plausibility(ProgramTest):
         self.assertEqual(self.warnings(ROOT / scene, mesh, command="run", strict=True), "")
 
     def test_what_where_why_what_to_do(self):
-        """Each with its words, on one rank and on two, and as an error where it is to be strict."""
+        """Each warning has the expected texts, on one and two ranks. With --strict it is an error."""
         cases = [
             (["Boundary conditions.shear.displacement={0.2*x*ramp(t), free}"], "Sprekk > Boundary conditions: displacements at t = 1 s differ by 0.375 m over 1.88 m of rock, 20 %",
              "strains are taken as small", "check the unit"),
@@ -75,7 +75,7 @@ class Plausibility(ProgramTest):
             self.assertIn(text, err)
 
     def test_entries_of_single_fractures(self):
-        """What a table gives single fractures is looked at, too: each entry once, and not what the material has of it."""
+        """Own entries of single fractures are checked, each once; values of the material are not repeated."""
         text = (ROOT / "xml/networks/mapped.csv").read_text().replace(",0.55,", ",3,").replace(",0.35,", ",2,")
         (self.folder / "mapped.csv").write_text(text)
         scene = self.folder / "mapped.xml"
@@ -91,7 +91,7 @@ class Plausibility(ProgramTest):
         self.assertIn('fracture "A4" > "friction coefficient": is 2, with 1 other like it:', err)
 
     def test_just_below(self):
-        """The bounds themselves are no cause for a warning."""
+        """Values at the bounds give no warning."""
         for sets in (["Boundary conditions.shear.displacement={0.2*ramp(t), free}"], ["Materials.rough joint.dilation angle=35"],
                      ["Time.schedule={1, 2}"], [*STRESS, "Bulk.initial stress={0, -5e6, 0, 3.5e6}"],
                      ["Materials.rough joint.damage=isotropic", "Materials.rough joint.damage length of friction=0.1",
@@ -101,7 +101,7 @@ class Plausibility(ProgramTest):
                 self.assertNotIn(text, err)
 
     def test_synonyms(self):
-        """What other programs call an entry is understood, if not taken."""
+        """Names of entries in other programs give an error with the name in Sprekk."""
         for name, meant in (("kn", "normal stiffness"), ("ks", "tangential stiffness"), ("shear stiffness", "tangential stiffness"),
                             ("cohesion", "bond"), ("JRC", "joint roughness coefficient"), ("JCS", "joint wall strength"), ("mu", "friction coefficient"),
                             ("phi", "friction angle"), ("psi", "dilation angle")):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Pictures of runs and of points: plot_test.py PROGRAM ROOT MPIEXEC
 
-Needs matplotlib, numpy and VTK's Python; without them it ends with status 77, which ctest shows as skipped."""
+Requires matplotlib, numpy and VTK's Python. If one is missing, the status is 77, for ctest's "skipped"."""
 import contextlib
 import csv
 import importlib.util
@@ -44,7 +44,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 
 
 def points_at(grid, axis, place):
-    """Numbers of the points of a plane across an axis."""
+    """Returns the indices of the points in a plane normal to an axis."""
     return np.flatnonzero(abs(vtk_to_numpy(grid.GetPoints().GetData())[:, axis] - place) < 1e-12)
 
 
@@ -53,7 +53,7 @@ class PlotTest(ProgramTest):
         style.plt.close("all")
 
     def draw(self, *words, expect=0):
-        """Standard output and error of the command."""
+        """Returns standard output and error of the command."""
         out, err = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             self.assertEqual(plot.main(list(map(str, words))), expect, err.getvalue())
@@ -77,13 +77,13 @@ class Pictures(PlotTest):
         load = dict(zip(names, zip(shear.lines, dilation.lines, stress.lines)))["1 MPa"]
         for line, initial in zip(load, (0, -0.02, 0)):  # MPa, mm under the initial load, MPa
             self.assertAlmostEqual(line.get_ydata()[0], initial, 12)
-        self.assertAlmostEqual(max(load[0].get_ydata()), 1.19175, delta=0.003)  # the peak strength by Barton's formula
+        self.assertAlmostEqual(max(load[0].get_ydata()), 1.19175, delta=0.003)  # peak strength by Barton's formula
         self.assertTrue(np.allclose(load[2].get_xdata(), 1))
         volume = dict(zip(names, dilation.lines))["1 MPa, constant volume"]
         self.assertTrue(np.allclose(volume.get_ydata(), -0.02))
 
     def figures(self, directory, *words):
-        """The figures of a run by name."""
+        """Returns {name: figure} of a run."""
         with contextlib.redirect_stderr(io.StringIO()):
             return dict(plot.of_run(self.folder / directory, plot.arguments(["-", *words])))
 
@@ -114,7 +114,7 @@ class Pictures(PlotTest):
         self.assertEqual(name, "point")
         self.expect_labels(figure, "tangential jump (mm)", "shear traction (Pa)", "normal traction (Pa)")
         x, y = figure.axes[0].lines[0].get_data()
-        self.assertEqual(len(x), 81)  # the initial state and 80 steps
+        self.assertEqual(len(x), 81)  # initial state and 80 steps
         self.assertEqual((x[0], y[0]), (0, 0))
         self.assertAlmostEqual(max(y), 0.18, 12)
         self.assertAlmostEqual(x[-1], 320, 9)  # mm
@@ -140,7 +140,7 @@ class Pictures(PlotTest):
         self.assertEqual([t for t in titles if t], ["flat", "steep"])
 
     def test_flow(self):
-        """Alone: pressure and velocity, in 2D on one rank and in 3D on two; on the fractures what they carry."""
+        """Flow only: pressure and velocity, in 2D on one rank and in 3D on two. Fractures show their own values."""
         for dim, cells in ((2, "{20, 20}"), (3, "{10, 10, 5}")):
             self.run_scene(f"flow/network_{dim}d.xml", f"Mesh.cells={cells}", "Time.steps=1", ranks=dim - 1)
             out, _ = self.draw(self.folder / "out")
@@ -157,7 +157,7 @@ class Pictures(PlotTest):
         self.assertIn("of runs that deform", err)
 
     def test_heat(self):
-        """Temperature and heat flux, as the run wrote them; in 2D on one rank and in 3D on two."""
+        """Temperature and heat flux are those of the run, in 2D on one rank and in 3D on two."""
         for dim, cells in ((2, "{8, 6}"), (3, "{4, 3, 3}")):
             self.run_scene(f"heat/cooling_{dim}d.xml", f"Mesh.cells={cells}", "Time.steps=1", ranks=dim - 1)
             out, _ = self.draw(self.folder / "out")
@@ -170,7 +170,7 @@ class Pictures(PlotTest):
                 np.testing.assert_allclose(np.sort(panels["temperature"][0]), np.sort(read.arrays(rock.GetCellData())["temperature"]))
 
     def test_rim_of_a_plane_run_is_that_of_the_body(self):
-        """No edges between the pieces of ranks; each side of a fracture once."""
+        """The rim contains each side of a fracture once, and no edges between the pieces of ranks."""
         def rim(ranks, *overrides):
             self.run_scene("verification/crossing_2d.xml", *overrides, ranks=ranks)
             rock, joints = (read.grid(self.folder / "out" / f"{kind}_0000.{end}") for kind, end in (("bulk", "pvtu"), ("fractures", "vtm")))
@@ -214,12 +214,12 @@ class Pictures(PlotTest):
         last = content["steps"][-1]["fractures"]["fracture"]
         x, y = self.figures("out")["loops"].axes[0].lines[0].get_data()
         self.assertEqual(len(y), 1 + len(content["steps"]))
-        self.assertEqual((x[0], y[0]), (0, 0))  # the initial state
+        self.assertEqual((x[0], y[0]), (0, 0))  # initial state
         self.assertAlmostEqual(abs(x[-1]) * 1e-3, abs(last["mean_jump"]["local"][1]), 12)
         self.assertAlmostEqual(abs(y[-1]), abs(last["mean_traction"]["local"][1]), 12)
 
     def test_loops_have_the_sign_of_the_results(self):
-        """Also where the largest excursion is a negative one, or round-off says which it is."""
+        """The sign of loops is that of the results, also if the largest value is negative or depends on round-off."""
         for ramp in ("{0, 1, -1.2}", "{0, 1, -1}", "{0, -1, 1}"):
             content = self.run_scene(ROOT / "docs/shear_test.xml", f"Tables.ramp.values={ramp}", "Time.steps=6", "Mesh.cells={8, 4}", "Output.vtu=false")
             wanted = [step["fractures"]["shear plane"]["mean_traction"]["local"][1] for step in content["steps"]]
@@ -227,7 +227,7 @@ class Pictures(PlotTest):
             self.assertTrue(np.allclose(1e6 * y, [0, *wanted], rtol=1e-9, atol=1), (ramp, y, wanted))
 
     def test_loops_under_stress_start_with_the_first_step(self):
-        """What the initial stress is on the fractures, the results do not tell."""
+        """The results do not contain the initial stress on fractures, so loops begin with the first step."""
         content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=4", "Output.vtu=false", "Bulk.body force={0, 0}", "Bulk.initial stress={0, -5e6, 0, 0}")
         figure = self.figures("out")["loops"]
         dilation = figure.axes[2].lines[0].get_data()
@@ -238,7 +238,7 @@ class Pictures(PlotTest):
         self.assertIn("first step", [text.get_text() for text in figure.legends[0].get_texts()])
 
     def means(self, n):
-        """Steps of a run with n fractures, and their names."""
+        """Returns the steps of a run with n fractures, and their names."""
         def mean(*local):
             return {"local": list(map(float, local))}
         names = [f"f {k + 1}" for k in range(n)]
@@ -246,7 +246,7 @@ class Pictures(PlotTest):
                 for t in (1, 2)], sorted(names)
 
     def test_loops_of_many_fractures(self):
-        """Curves that are named differ in colour or line, in the order of their numbers, beside the axes."""
+        """Named curves differ in colour or line style. The legend is sorted by number and beside the axes."""
         for n, named in ((12, 12), (40, style.MOST_CURVES)):
             figure = loops.of_fractures(*self.means(n), "many")
             legend = figure.axes[2].get_legend()
@@ -270,7 +270,7 @@ class Pictures(PlotTest):
             self.assertGreaterEqual(sum(low <= tick <= high for tick in ax.get_yticks()), 2)
 
     def crossing_traces(self, n):
-        """The faces of a fracture of n traces side by side, two faces each; the last slips, the others stick."""
+        """Returns a fracture with n parallel traces of two faces. The last but one slips, the others stick."""
         points = np.array([[x, k, 0.0] for k in range(n) for x in (0, 1, 3)])
         faces = [np.array([3 * k + i, 3 * k + i + 1]) for k in range(n) for i in (0, 1)]
         state = np.ones(2 * n)
@@ -281,7 +281,7 @@ class Pictures(PlotTest):
         return read.Surface(points, faces, data, {})
 
     def test_every_trace_of_a_fracture_shows(self):
-        """Each has its strip of states; the largest jumps have colours and numbers of their own."""
+        """Each trace has a strip of states. The largest jumps have colours and labels."""
         for n in (5, 30):
             axes = fractures.along(self.crossing_traces(n), ["set"], "run", 1e-3, 1e6).axes
             strips = axes[-1].collections
@@ -293,7 +293,7 @@ class Pictures(PlotTest):
             self.assertEqual(len({line.get_color() for line in legend.get_lines()}), len(labels))
 
     def test_traces_have_the_names_of_the_results(self):
-        """In the order of results.json, whatever their places; without the name of their set in its own column."""
+        """Traces are in the order of results.json, with names without that of their set."""
         surface = self.crossing_traces(4)
         surface.cell_data["single fracture"] = np.array([3, 3, 1, 1, 0, 0, 2, 2])
         singles = [{"name": name} for name in ("A", "set 7", "C 1", "D")]
@@ -304,7 +304,7 @@ class Pictures(PlotTest):
         self.assertEqual([text.get_text() for text in axes[-1].get_yticklabels()], ["A", "7", "C 1", "D"])
 
     def test_many_fractures_fit_a_page(self):
-        """In the order of their numbers, four beside each other."""
+        """Many fractures are in the order of their numbers, four in a row."""
         surface = self.crossing_traces(11)
         surface.cell_data["fracture"] = np.repeat(np.arange(11), 2)
         names = sorted(str(k + 1) for k in range(11))
@@ -333,11 +333,11 @@ class Pictures(PlotTest):
         self.assertEqual(sorted(self.figures("out")), ["bulk", "convergence", "fractures", "maps", "mohr"])
 
     def shown_by_paraview(self, output):
-        """What the state shows: displays of the stand-in of ParaView."""
+        """Returns the displays of the state in the mock of ParaView."""
         out, _ = self.draw("--paraview", self.folder / output)
         state = self.folder / output / "paraview.py"
         self.assertEqual(Path(out.strip()), state)
-        sys.modules.pop("paraview_stub", None)  # a new view
+        sys.modules.pop("paraview_stub", None)  # for a new view
         import paraview_stub
         with mock.patch.dict(sys.modules, {"paraview": types.ModuleType("paraview"), "paraview.simple": paraview_stub}):
             view = runpy.run_path(str(state))["view"]
@@ -377,7 +377,7 @@ class Pictures(PlotTest):
 
 
     def test_injection(self):
-        """Pressure less that of the start, volume, effective tractions, time in hours: as the run wrote them."""
+        """Pressure change, volume, effective tractions and time in hours are those of the run."""
         content = self.run_scene("poro/injection_2d.xml", "Time.steps=3", "Time.end=10800")
         made = self.figures("out")
         change = made["flow"].axes[1]
@@ -433,7 +433,9 @@ class Pictures(PlotTest):
         self.assertEqual([maps.line_width(traces(n), outline) for n in (1, 25, 1000)], [3, 2, 1.8])
 
     def test_mohr(self):
-        """Faces as the run wrote them, the circle of the mean stress, a line of the slope of friction, paths of means."""
+        """Face tractions and mean paths are those of the run.
+
+        The diagram contains the circle of mean stress and the strength."""
         content = self.run_scene("verification/crossing_2d.xml")
         ax = self.figures("out")["mohr"].axes[0]
         lines = {line.get_label(): line.get_data() for line in ax.lines}
@@ -462,25 +464,25 @@ class Pictures(PlotTest):
         self.assertEqual(joints, {"a": {"friction": "Coulomb", **own["single_fractures"][0]["own_joint"]}})
 
     def test_thin_bodies_are_drawn_wide(self):
-        """Above each other, with nothing left over; square ones beside each other."""
+        """Panels of thin bodies are in a column without empty space, those of square bodies in a row."""
         strip, square = np.array([[0.0, 0], [30, 1]]), np.array([[0.0, 0], [1, 1]])
         for points, rows in ((strip, 3), (square, 1)):
             figure, axes, where = style.panels_of_plane(3, points)
             self.assertEqual(len(figure.axes), 3)
             self.assertEqual(figure.axes[0].get_gridspec().nrows, rows)
             self.assertEqual(bool(where), rows == 3)
-            self.assertLess(150 * figure.get_size_inches()[0], 2000)  # dots at the usual resolution
+            self.assertLess(150 * figure.get_size_inches()[0], 2000)  # dots at the default resolution
 
 
 class Maps(PlotTest):
     def test_slip_tendency(self):
-        """Shear over compression; none on faces that are open or pulled, or carry round-off; zero where the shear is round-off."""
+        """Shear over compression; NaN on open faces, in tension and for round-off; zero if the shear is round-off."""
         traction = np.array([[-2.0, 1, 0], [-2, 0, -3], [0, 0, 0], [1, 1, 0], [-1e-14, 1, 0], [-5, 1e-10, 0]])
         data = {"traction local": traction, "traction": traction, "jump": traction, "state": np.array([1, 2, 0, 0, 1, 1])}
         self.assertTrue(np.array_equal(maps.slip_tendency(data, 5), [0.5, 1.5, np.nan, np.nan, np.nan, 0], equal_nan=True))
 
     def test_planes(self):
-        """Faces in one plane are one pole, with the mean over their area; those of another fracture or height another."""
+        """Faces in one plane form one pole with the area mean. Another fracture or height gives another pole."""
         square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
         corners = [square, square * [3, 1, 1] + [1, 0, 0], square, square + [0, 0, 1], square + [2, 0, 1]]
         surface = read.Surface(np.concatenate(corners), list(np.arange(20).reshape(5, 4)), {"fracture": np.array([0, 0, 1, 0, 0])}, {})
@@ -488,7 +490,7 @@ class Maps(PlotTest):
         self.assertTrue(np.allclose(found, [0.4, 0.7, 0.9]), found)
 
     def test_colours_are_those_of_the_results(self):
-        """2D: a line of each face has the value of the face; open ones are told in a legend."""
+        """In 2D each face has a line with the colour of its value. A legend explains open faces."""
         self.run_scene("verification/crossing_2d.xml")
         figure = self.figure("out", "maps")
         data = read.arrays(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]).GetCellData())
@@ -542,7 +544,7 @@ class Errors(PlotTest):
         self.expect_error(self.folder / "out", ["fractures.pvd: has no step at t = "])
 
     def test_damaged_pieces(self):
-        """An empty or cut file is one error that names it, without lines of VTK and without pictures."""
+        """An empty or truncated file gives one error with its name, without messages of VTK and without pictures."""
         self.run_scene("seed/push_2d.xml")
         command = [sys.executable, "-B", ROOT / "apps/plot", self.folder / "out", "--output", self.folder / "pictures"]
         for name in ("fractures/fractures_0000_0_0.vtu", "bulk/bulk_0000_0.vtu"):
@@ -572,7 +574,7 @@ class Errors(PlotTest):
         self.expect_error(self.folder / "run", ["results.json: is no JSON"])
 
     def test_columns_by_their_titles(self):
-        """In any order; none twice, none too many."""
+        """Columns may have any order. Repeated or additional columns are errors."""
         path = self.csv("point/cyclic_shear.xml", "Time.steps=4")
         rows = [line.split(",") for line in path.read_text().splitlines()]
         turned = self.write("turned.csv", "".join(",".join(row[::-1]) + "\n" for row in rows))
@@ -612,20 +614,22 @@ class Numbers(ProgramTest):
 
     def test_chains_order_the_faces_of_a_fracture(self):
         points = np.array([[3.0, 0, 0], [0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 2, 0], [3, 2, 0]])
-        faces = [np.array(f) for f in ([4, 5], [1, 2], [3, 4])]  # points 2 and 3 are the same place
+        faces = [np.array(f) for f in ([4, 5], [1, 2], [3, 4])]  # points 2 and 3 have the same place
         (chain, arc), = fractures.chains(read.Surface(points, faces, {}, {}))
         self.assertEqual(chain, [1, 2, 0])
         self.assertTrue(np.allclose(arc, [0, 1, 3, 5]))
 
     def test_main_direction(self):
-        """Towards the first that has one, not the largest; in 2D always that of the results."""
+        """The sign is that of the first vector with an extent, not of the largest. In 2D it is that of the results."""
         along = loops.main_direction(np.array([[1e-15, -1e-15], [0.1, 0.1], [-2.0, -2.0], [1.0, 1.0]]))
         self.assertTrue(np.allclose(along, [0.5**0.5, 0.5**0.5]))
         self.assertEqual(loops.main_direction(np.array([[0.1], [-2.0]])).tolist(), [1])
         self.assertEqual(abs(loops.main_direction(np.zeros((3, 2)))).tolist(), [1, 0])
 
     def test_traces_that_cross(self):
-        """Each is one chain, from end to end; one that abuts ends there, and a bend is none."""
+        """Each crossing trace is one chain between its ends.
+
+        An abutting trace ends there; a bend does not end a chain."""
         points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [1, -1, 0], [1, 1, 0], [2, 1, 0], [0, 2, 0], [3, 2, 0]])
         faces = [np.array(f) for f in ([0, 1], [3, 1], [1, 2], [1, 4], [4, 5], [6, 4], [4, 7])]
         found = {tuple(sorted(chain)) for chain, _ in fractures.chains(read.Surface(points, faces, {}, {}))}
@@ -695,7 +699,7 @@ class Numbers(ProgramTest):
         self.assertRaises(read.PlotError, series.of_probe, path)
 
     def test_magnitudes(self):
-        """The slope of a sample of a known one, within three standard errors; none of a few fractures."""
+        """The b-value of a known sample is correct within three standard errors, and absent for few fractures."""
         sample = 2 + np.random.default_rng(1).exponential(np.log10(np.e) / 1.2, 3000)
         b, error = magnitudes.b_value(sample, 2.0)
         self.assertLess(abs(b - 1.2), 3 * error)
@@ -710,7 +714,7 @@ class Numbers(ProgramTest):
         self.assertIsNone(magnitudes.of_step({}, "run"))
 
     def test_rose_is_centred_on_axes(self):
-        """A line along y is a bar around y, not beside it; the bars are shares in percent, both ways."""
+        """A line along y gives a bar centred at y. Bars are shares in percent, in both directions."""
         ax = style.plt.figure().add_subplot(projection="polar")
         maps.orientations.draw_rose(ax, [("red", [np.array([[0.0, 0], [0, 2]]), np.array([[0.0, 0], [1, 0]])])])
         bars = {round(np.degrees(bar.get_x() + bar.get_width() / 2)): bar.get_height() for bar in ax.patches if bar.get_height() > 0}

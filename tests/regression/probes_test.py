@@ -25,13 +25,13 @@ def probe(name, **entries):
 
 class Probes(ProgramTest):
     def table(self, name, output="out"):
-        """Columns by their titles."""
+        """Returns {title: values} of a probe."""
         with open(self.folder / output / "probes" / f"{name}.csv") as file:
             rows = list(csv.reader(file))
         return {title: [float(row[k]) for row in rows[1:]] for k, title in enumerate(rows[0])}
 
     def near(self, table, title, *exact, start=0, tolerance=1e-8):
-        """The values behind those of the start, which are all one, or the same as later."""
+        """Compares the values after those of the initial state, which are `start`, or equal to the later ones."""
         n = len(exact)
         self.assertIn(len(table[title]) - n, (1, n), table)
         self.assertEqual(set(table[title][:-n]), {start} if start is not None else set(table[title][-n:]), title)
@@ -39,7 +39,7 @@ class Probes(ProgramTest):
             self.assertAlmostEqual(value, wanted, delta=tolerance * max(abs(wanted), 1e-4), msg=title)
 
     def test_uniform_strain(self):
-        """Points, lines, means, extremes and integrals of linear displacements and uniform stress, on all cells."""
+        """Points, lines, means, extremes and integrals of linear displacement and uniform stress, in all cell types."""
         probes = [*probe("here", point="{0.7, 1.9}", outputs="{displacement, stress}"),
                   *probe("along", line="{0, 0, 2, 3}", points=5, outputs="{displacement}"),
                   *probe("top", boundary="north", outputs="{displacement}"),
@@ -69,7 +69,7 @@ class Probes(ProgramTest):
             self.near(self.table("side"), "reactions y [N/m]", 2 * LOAD)
 
     def test_space(self):
-        """The same in 3D, of each kind of cell: vertical stretch by a load on top."""
+        """Vertical load in 3D, for each cell type."""
         base = "verification/uniaxial_3d.xml"
         for cell, order in (("tetrahedron", 1), ("hexahedron", 1), ("hexahedron", 2)):
             self.run_scene(base, QUIET, f"Mesh.cell={cell}", f"Mesh.order={order}",
@@ -81,7 +81,7 @@ class Probes(ProgramTest):
             self.assertLess(high["stress ZZ [Pa]"][-1], 0)
 
     def test_injection_in_days(self):
-        """Thirty days of injection: wells, fractures, lines and boundaries, as in results.json, after the initial state."""
+        """Thirty days of injection: probes agree with results.json, and begin with the initial state."""
         r = self.run_scene(INJECTION)
         well = self.table("well")
         self.near(well, "time [d]", *range(1, 31))
@@ -106,7 +106,7 @@ class Probes(ProgramTest):
         self.assertGreater(above[-1], 10e6)
 
     def test_initial_state(self):
-        """Tables begin with the state at the start, which changes nothing of the steps; steady flow has none."""
+        """Tables begin with the initial state, which does not change the steps. Steady flow has no initial state."""
         start, stress = 3.0, -4e6
         sets = [QUIET, f"Time.start={start}", f"Bulk.initial stress={{{stress}, {stress}, {stress}, 0}}", "Time.end=4"]
         plain = self.run_scene(PATCH, *sets)["steps"]
@@ -116,7 +116,7 @@ class Probes(ProgramTest):
         here = self.table("here")
         self.assertEqual(here["time [s]"], [start, 4])
         self.assertEqual([here["stress YY [Pa]"][0], here["displacement y [m]"][0]], [stress, 0])
-        self.assertAlmostEqual(self.table("side")["reactions y [N/m]"][0], -2 * stress, delta=1e-3)  # what holds that stress
+        self.assertAlmostEqual(self.table("side")["reactions y [N/m]"][0], -2 * stress, delta=1e-3)  # initial stress
         place = probe("here", point="{205, 105, -1010}", outputs="{pressure, Darcy velocity}")
         self.run_scene("flow/wells_3d.xml", QUIET, "Time.steps=1", "Mesh.cells={20, 20, 2}", *place)
         self.assertAlmostEqual(self.table("here")["pressure [Pa]"][0], 1e7 - 9810 * 10, delta=1)  # of the cell
@@ -124,7 +124,7 @@ class Probes(ProgramTest):
         self.assertEqual(len(self.table("here")["time [s]"]), 1)
 
     def at_utm(self, name, size):
-        """A scene whose box, fractures and wells are `size` times as large and have UTM coordinates."""
+        """Returns a scene with UTM coordinates and geometry enlarged by `size`, and a function for places."""
         text, origin = self.scene(name).read_text(), (5e5, 6.7e6, -2e3)
 
         def moved(entry):
@@ -137,7 +137,7 @@ class Probes(ProgramTest):
         return str(path), lambda *x: "{" + ", ".join(repr(origin[k % 2 if len(x) in (2, 4) else k % 3] + size * v) for k, v in enumerate(x)) + "}"
 
     def test_large_coordinates(self):
-        """Places on cells of a metre and a decimetre, far from the origin: inside, on sides, nodes, fractures; wells."""
+        """Places far from the origin: inside, on sides, nodes and fractures, and wells, in cells of 1 m and 0.1 m."""
         for size in (1.5, 0.15):  # cells of 1 and 0.1 m
             scene, at = self.at_utm(PATCH, size)
             points = [(0.7, 1.9), (2, 3), (0, 0), (1, 0.1), (2 / 3, 0.75), (2, 1.234)]
@@ -181,7 +181,7 @@ class Probes(ProgramTest):
                          expect=expect)
 
     def test_restart(self):
-        """A run in two parts has the table of one that was not interrupted: no gap, no line twice."""
+        """After a restart the table is that of an uninterrupted run, without gaps or repeated lines."""
         fracture = list(self.run_scene(CYCLIC, QUIET)["steps"][0]["fractures"])[0]
         sets = ["Output.checkpoints.steps=2", QUIET, *probe("joint", fracture=fracture, outputs="{slip, traction local}")]
         whole = self.run_scene(CYCLIC, *sets, output="whole")
@@ -192,7 +192,7 @@ class Probes(ProgramTest):
         self.call("run", self.scene(CYCLIC), "--output", "parts", *words, "--set", f"Time.schedule={schedule}")
         self.assertEqual(self.table("joint", "parts")["time [s]"][-1], middle)
         csv_file = self.folder / "parts" / "probes" / "joint.csv"
-        csv_file.write_bytes(csv_file.read_bytes() + b"99,1,2")  # as of a run that was killed in a later step
+        csv_file.write_bytes(csv_file.read_bytes() + b"99,1,2")  # as after a kill in a later step
         shutil.copytree(self.folder / "parts", self.folder / "others")
         self.call("run", self.scene(CYCLIC), "--output", "parts", *words, "--restart")
         self.assertEqual(self.text("parts"), self.text("whole"))
@@ -212,7 +212,7 @@ class Probes(ProgramTest):
         self.assertFalse((self.folder / "others" / "probes" / "new.csv").exists())
 
     def test_killed(self):
-        """What was written stays: whole lines of all whole steps."""
+        """After a kill the table contains complete lines of all complete steps."""
         steps = 200
         words = ["--set", f"Time.steps={steps}", "--set", QUIET]
         for one in probe("here", point="{0.7, 1.9}", outputs="{displacement}"):
@@ -230,7 +230,7 @@ class Probes(ProgramTest):
         self.assertTrue(path.read_bytes().endswith(b"\n"))
 
     def test_one_file_for_others(self):
-        """xarray reads all tables, with units and dimensions, without code of ours."""
+        """xarray reads all tables, with units and dimensions."""
         try:
             import h5netcdf  # noqa: F401
             import xarray
@@ -251,7 +251,7 @@ class Probes(ProgramTest):
             self.assertEqual([float(p) for p in well["pressure"]], self.table("well")["pressure [Pa]"])
 
     def test_errors(self):
-        """One line for each, naming the probe, the value and what there is; on every number of ranks, before a step."""
+        """Each error is one line with probe, value and alternatives, before the first step, for any ranks."""
         wrong = [(probe("p", point="{5, 5}", outputs="{stress}"), 'Probes > p: (5, 5, 0) is outside of the mesh'),
                  (probe("p", point="{1, 1, 1}", outputs="{stress}"), 'Probes > p > "point": has 3 values, must have 2'),
                  (probe("p", point="{1, 1}", outputs="{stres}"), '"outputs": is "stres", must be one of "displacement", "stress". Did you mean "stress"?'),

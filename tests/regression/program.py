@@ -1,4 +1,4 @@
-"""Runs the program in a scratch folder, on one rank or several."""
+"""Runs the program in a temporary folder, on one rank or several."""
 import json
 import os
 import subprocess
@@ -7,10 +7,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
-# Given on the command line: the program, the folder that holds xml/, mpiexec.
+# Command-line arguments: the program, the folder with xml/, mpiexec.
 PROGRAM, ROOT, MPIEXEC = (Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3]) if len(sys.argv) > 3 else (None, None, None)
 ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}  # without a daemon of Open MPI
-TIME_LIMIT = 600  # seconds; ends what hangs, on a busy machine nothing else: the call has status 124
+TIME_LIMIT = 600  # seconds, for calls that hang; their status is then 124
 
 
 class ProgramTest(unittest.TestCase):
@@ -23,7 +23,7 @@ class ProgramTest(unittest.TestCase):
         return ROOT / "xml" / name
 
     def call(self, *arguments, ranks=1, expect=0):
-        """Standard output and error; a call that takes too long or ends with another status fails."""
+        """Returns standard output and error. Fails after a timeout or for another status."""
         command = [str(PROGRAM), *map(str, arguments)]
         if ranks > 1:
             command = [MPIEXEC, "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
@@ -33,7 +33,7 @@ class ProgramTest(unittest.TestCase):
         return done.stdout, done.stderr
 
     def run_scene(self, name, *overrides, ranks=1, expect=0, output="out"):
-        """The results of a run."""
+        """Runs a scene and returns its results."""
         sets = [word for override in overrides for word in ("--set", override)]
         scene = name if os.path.isabs(name) else self.scene(name)
         self.call("run", scene, "--output", output, *sets, ranks=ranks, expect=expect)

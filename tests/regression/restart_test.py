@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs that go on from a checkpoint: restart_test.py PROGRAM ROOT MPIEXEC [NUMBER OF KILLS]"""
+"""Restarts from checkpoints: restart_test.py PROGRAM ROOT MPIEXEC [NUMBER OF KILLS]"""
 import json
 import os
 import random
@@ -15,12 +15,12 @@ import program
 from program import ProgramTest, main
 
 N_KILLS = int(sys.argv[4]) if len(sys.argv) > 4 else 12
-CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml"  # faces open, stick and slip on the way
-MASONRY, FLOATING = "contact/masonry_cross_2d.xml", "contact/floating_3d.xml"  # constants are corrected; a piece is loose
-TURNS = "contact/damage_turns_3d.xml"  # histories by direction, more of them than there is room for
+CYCLIC, CROSSING = "verification/cyclic_2d.xml", "verification/crossing_3d.xml"  # faces open, stick and slip
+MASONRY, FLOATING = "contact/masonry_cross_2d.xml", "contact/floating_3d.xml"  # calibrated constants; a floating block
+TURNS = "contact/damage_turns_3d.xml"  # directional histories, more than fit in the table
 INJECTION = "poro/injection_2d.xml"  # fractures slide, widen and open
-SHUT_IN = "poro/shut_in_2d.xml"  # steps choose themselves
-DOUBLET = "thm/doublet_2d.xml"  # the same, with heat
+SHUT_IN = "poro/shut_in_2d.xml"  # adaptive steps
+DOUBLET = "thm/doublet_2d.xml"  # adaptive steps with heat
 HISTORY = ["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",  # of two laws
            "Materials.joint.residual part of friction=0.5", "Materials.joint.closure=Barton-Bandis with memory",
            "Materials.joint.irrecoverable part of closure=0.3"]
@@ -29,7 +29,7 @@ EVERY_STEP = "Output.checkpoints.steps=1"
 
 
 def small_files(size):
-    """To be called in a process: no file of its own may grow beyond this, as on a disk that is full."""
+    """Returns a function for a process that limits the size of its files, as on a full disk."""
     def limit():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
@@ -47,25 +47,25 @@ class Restart(ProgramTest):
         return command
 
     def go(self, *arguments, expect=0, limit=None, **options):
-        """What a run says."""
+        """Returns standard output and error of a run."""
         command = self.command(*arguments, **options)
-        environment = {**os.environ, "PMIX_MCA_gds": "hash"}  # MPI itself must live without large files
+        environment = {**os.environ, "PMIX_MCA_gds": "hash"}  # MPI works without large files
         done = subprocess.run(["timeout", str(program.TIME_LIMIT), *command], cwd=self.folder, capture_output=True, text=True,
                               stdin=subprocess.DEVNULL, preexec_fn=limit, env=environment)
         self.assertEqual(done.returncode, expect, f"{command}\n{done.stdout}{done.stderr}")
         return done.stdout + done.stderr
 
     def checkpoints(self, output="out"):
-        """Folders of the complete ones, the last one last."""
+        """Returns the folders of complete checkpoints in their order."""
         folder = self.folder / output / "checkpoints"
         return sorted((f for f in folder.glob("*") if f.name.isdigit()), key=lambda f: int(f.name))
 
     def reached(self, output):
-        """The number of the last checkpoint, 0: there is none."""
+        """Returns the number of the last checkpoint, or 0."""
         return max((int(folder.name) for folder in self.checkpoints(output)), default=0)
 
     def last(self, output="out"):
-        """What the last checkpoint holds: its numbers, the journal up to it and the bytes of all values."""
+        """Returns the last checkpoint: its numbers, its journal and the bytes of all values."""
         folder = self.checkpoints(output)[-1]
         sealed = json.loads((folder / "manifest.json").read_text())["sealed"]
         sealed["content"].pop("restarts")
@@ -105,7 +105,7 @@ class Restart(ProgramTest):
                 self.assertEqual(self.results("parts")["restarts"], [float(times[-1])])
 
     def run_and_go_on(self, *scene, ranks):
-        """A whole run, and its second part anew from the first of two checkpoints: both have the same bits."""
+        """Repeats the second part of a run from the first of two checkpoints. Both results are bitwise identical."""
         for folder in ("whole", "parts"):
             shutil.rmtree(self.folder / folder, ignore_errors=True)
         self.go(*scene, QUIET, ranks=ranks, output="whole")
@@ -116,7 +116,7 @@ class Restart(ProgramTest):
         self.expect_same_bits("whole", "parts")
 
     def test_same_bits_with_a_longer_schedule(self):
-        """Of a run that ended by its schedule, and goes on with further times."""
+        """A run completed by its schedule continues with further times."""
         for ranks in (1, 2):
             with self.subTest(ranks=ranks):
                 scene, whole = [CYCLIC, EVERY_STEP, QUIET], "Time.schedule={1, 2, 4, 4.5}"
@@ -128,7 +128,7 @@ class Restart(ProgramTest):
                     shutil.rmtree(self.folder / folder)
 
     def test_same_steps_where_they_choose_themselves(self):
-        """With all that the choice remembers."""
+        """Adaptive steps continue with the data of the step control."""
         n_rejected = 0
         for scheme, ranks in (("implicit Euler", 1), ("BDF2", 1), ("implicit Euler", 2)):
             with self.subTest(scheme=scheme, ranks=ranks):
@@ -140,7 +140,7 @@ class Restart(ProgramTest):
         self.assertGreater(n_rejected, 0)
 
     def test_killed_at_any_moment(self):
-        """Of a step, a few steps after the start: also while a checkpoint is written."""
+        """Kills a run at random times in a step, also during the writing of a checkpoint."""
         scene = [CYCLIC, "Time.steps=32", "Mesh.cells={4, 4}", EVERY_STEP, QUIET]
         begin = time.monotonic()
         self.go(*scene, output="whole")
@@ -158,7 +158,7 @@ class Restart(ProgramTest):
             run.send_signal(signal.SIGKILL)
             words = run.communicate()[1].decode()
             self.assertIn(run.returncode, (0, -signal.SIGKILL), words)
-            self.assertNotIn("checkpoint", words)  # none was damaged
+            self.assertNotIn("checkpoint", words)  # no damaged checkpoint
             self.assertTrue(self.reached("parts") > before or run.returncode == 0)
             kills += run.returncode != 0
             if run.returncode == 0:
@@ -168,7 +168,7 @@ class Restart(ProgramTest):
         self.expect_same_bits("whole", "parts")
 
     def start(self, *arguments, **options):
-        """A run that has begun with its steps."""
+        """Starts a run and waits for its first steps."""
         run = subprocess.Popen(self.command(*arguments, **options), cwd=self.folder, stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
         self.addCleanup(run.stderr.close)
@@ -182,7 +182,7 @@ class Restart(ProgramTest):
         return run
 
     def expect_interrupted(self, run, n_steps):
-        """Ends with a status of its own and a checkpoint of the last whole step."""
+        """Checks the status of an interrupted run, and that the last checkpoint is that of the last complete step."""
         words = run.stderr.read()
         self.assertEqual(run.wait(), 4, words)
         self.assertRegex(words, "sprekk: stopping; a second signal stops at once\n"
@@ -195,7 +195,7 @@ class Restart(ProgramTest):
     def test_interrupted(self):
         self.go(CYCLIC, "Time.steps=100", QUIET, EVERY_STEP, output="whole")
         for number, ranks, n_steps, every in ((signal.SIGINT, 1, 100, EVERY_STEP),
-                                              (signal.SIGUSR1, 3, 100, EVERY_STEP),  # mpirun hands it on
+                                              (signal.SIGUSR1, 3, 100, EVERY_STEP),  # mpirun forwards it
                                               (signal.SIGTERM, 1, 300, "Output.checkpoints.minutes=1000")):
             with self.subTest(ranks=ranks, every=every):
                 scene = [CYCLIC, f"Time.steps={n_steps}", QUIET, every]
@@ -210,7 +210,7 @@ class Restart(ProgramTest):
                 shutil.rmtree(self.folder / "out")
 
     def test_interrupted_in_a_long_step(self):
-        """More iterations than are allowed: substeps, tethers and their halvings take long."""
+        """With too few allowed iterations a step has many substeps and proximal continuations."""
         scene = [CYCLIC, "Mesh.cells={150, 150}", "Time.maximum halvings=20", EVERY_STEP, QUIET]
         self.go(*scene, "Time.end=1", "Time.steps=1")
         before = self.last()
@@ -232,7 +232,7 @@ class Restart(ProgramTest):
                     self.assertEqual(self.results()["steps"], [])
 
     def test_interrupted_in_a_linear_solve(self):
-        """One that would take for ever: nothing is close enough."""
+        """A linear solve with an unreachable tolerance is interrupted."""
         solver = [f"Solver.Linear solver.{entry}" for entry in (
             "type=iterative", "forcing=false", "Belos.Solver Type=Pseudo Block CG", "Belos.Convergence Tolerance=1e-300",
             "Belos.Maximum Iterations=1000000000")]
@@ -250,7 +250,7 @@ class Restart(ProgramTest):
                 shutil.rmtree(self.folder / "out")
 
     def test_interrupted_before_the_first_step(self):
-        """At any time from the first line of the program on: while MPI starts, the scene is read, the mesh is made."""
+        """A signal may arrive at any time after the start of the program: during MPI start, input or meshing."""
         for delay in (0, 0.02, 0.05, 0.1, 0.2, 0.3):
             with self.subTest(delay=delay):
                 run = subprocess.Popen(self.command(CYCLIC, "Mesh.cells={100, 100}", QUIET), cwd=self.folder,
@@ -263,12 +263,12 @@ class Restart(ProgramTest):
                 self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 4)
 
     def catches(self, pid, number):
-        """Whether a process has a function for a signal."""
+        """Returns whether a process has a handler for a signal."""
         with open(f"/proc/{pid}/status") as status:
             return any(line.startswith("SigCgt:") and int(line.split()[1], 16) >> (number - 1) & 1 for line in status)
 
     def test_two_runs_into_one_directory(self):
-        """The second is refused, and the first does not notice."""
+        """A second run in the same directory is rejected without effect on the first."""
         scene = [CYCLIC, "Time.steps=100000", EVERY_STEP, QUIET]
         run = self.start(*scene)
         for ranks in (1, 3):
@@ -281,7 +281,7 @@ class Restart(ProgramTest):
         run.send_signal(signal.SIGKILL)
         run.wait()
         self.assertEqual(self.results()["status"], "running")
-        self.go(CYCLIC, "Time.steps=1", QUIET)  # a lock does not outlive who held it
+        self.go(CYCLIC, "Time.steps=1", QUIET)  # a lock ends with its process
         self.assertEqual(self.results()["status"], "completed")
         self.assertFalse((self.folder / "out/.lock").exists())
 
@@ -299,7 +299,7 @@ class Restart(ProgramTest):
             self.go(CYCLIC, f"Time.steps={n}", EVERY_STEP, QUIET)
             size[n] = sum(file.stat().st_size for file in self.checkpoints()[-1].iterdir())
             self.assertEqual((self.folder / "out/checkpoints/journal").read_text().count("\n"), n)
-        self.assertLess(abs(size[40] - size[4]), 100)  # digits
+        self.assertLess(abs(size[40] - size[4]), 100)  # differences in digits
 
     def test_one_of_three_ranks_is_killed(self):
         scene = [CYCLIC, "Time.steps=200", EVERY_STEP, QUIET]
@@ -328,14 +328,14 @@ class Restart(ProgramTest):
 
         log = self.folder / "out/log.txt"
         log.unlink()
-        log.symlink_to("/dev/null")  # else it is the file that is too large
+        log.symlink_to("/dev/null")  # otherwise it would exceed the limit
         words = self.go(*scene, restart=True, limit=small_files(1000), expect=1)  # nothing can be written
         self.assertRegex(words, "out/(?!log)\\S+: cannot be written: File too large")
         log.unlink()
         self.assertEqual(self.results(), results)
         self.assertEqual(self.last(), before)
 
-        words = self.go(*scene, restart=True, limit=small_files(2 * size))  # all but checkpoints
+        words = self.go(*scene, restart=True, limit=small_files(2 * size))  # everything except checkpoints
         self.assertRegex(words, "warning: no checkpoint at t = 4: .*piece_0.h5: cannot be written: File too large")
         self.assertEqual(self.results()["steps"], self.results("whole")["steps"])
         self.assertEqual(self.last(), before)
@@ -391,7 +391,7 @@ class Restart(ProgramTest):
             shutil.rmtree(self.folder / "out")
 
     def test_other_versions(self):
-        """Of a checkpoint in another format it is said that it is one; what is in it is not compared with the scene."""
+        """A checkpoint in another format gives an error about the version, without comparison of its content."""
         self.go(CYCLIC, "Time.end=1", "Time.steps=1", EVERY_STEP, QUIET)
         manifest = self.checkpoints()[0] / "manifest.json"
         sealed = json.loads(manifest.read_text())["sealed"]
@@ -407,7 +407,7 @@ class Restart(ProgramTest):
             self.assertNotIn("damaged", words)
 
     def test_damaged_journal(self):
-        """The results of the earlier steps, in one of two copies."""
+        """The journal of earlier results has two copies, one of which may be damaged."""
         scene = [CYCLIC, EVERY_STEP, QUIET]
         self.go(*scene, output="whole")
         for name in ("journal", "journal_copy"):
@@ -444,7 +444,7 @@ class Restart(ProgramTest):
         scene = [CYCLIC, "Output.checkpoints.steps=2", "Output.every=1"]
         self.go(*scene, output="whole", ranks=2)
         self.go(*scene, "Time.end=5", "Time.steps=5", ranks=2)
-        shutil.rmtree(self.checkpoints()[-1])  # as if killed after step 5
+        shutil.rmtree(self.checkpoints()[-1])  # as after a kill in step 5
         self.go(*scene, "Time.end=4", "Time.steps=4", ranks=2, restart=True)
         self.assertEqual(len(self.results()["steps"]), 4)
         self.assertEqual((self.folder / "out/bulk.pvd").read_text().count("<DataSet"), 4)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a run leaves behind: results_test.py PROGRAM ROOT MPIEXEC"""
+"""Output files of a run: results_test.py PROGRAM ROOT MPIEXEC"""
 import re
 import struct
 import subprocess
@@ -14,7 +14,7 @@ QUIET = "Output.vtu=false"
 
 
 def numbers(value):
-    """All numbers in a piece of JSON, in order."""
+    """Returns all numbers in JSON data, in order."""
     if isinstance(value, dict):
         return [x for key in sorted(value) for x in numbers(value[key])]
     if isinstance(value, list):
@@ -23,7 +23,7 @@ def numbers(value):
 
 
 def cell_data(path, name):
-    """The values of an array of scalars in a .vtu file, whose binary data are compressed in blocks and appended."""
+    """Returns the values of a scalar array in a .vtu file, with compressed, appended binary data."""
     content = path.read_bytes()
     offset = re.search(rf'Name="{name}"[^>]*offset="(\d+)'.encode(), content)[1]
     start = content.index(b"_", content.index(b"<AppendedData")) + 1 + int(offset)
@@ -68,13 +68,15 @@ class Results(ProgramTest):
             self.assertIn("direct", r["solver"]["choice"])
 
     def test_steps_do_not_write_all_results(self):
-        """results.json is written anew every few seconds, not after every step: else runs of many steps took quadratic time."""
+        """results.json is rewritten every few seconds and not after each step, which would take quadratic time."""
         timing = self.run_scene("verification/uniaxial_2d.xml", "Output.vtu=false", "Time.steps=100")["timing"]
         self.assertEqual(timing["time_steps"]["count"], 100)
         self.assertLessEqual(timing["results"]["count"], 1 + timing["time_steps"]["seconds"] / 4)
 
     def test_error_estimate(self):
-        """Only where it is asked for; on any number of ranks the same, in the fields as in the numbers."""
+        """The error estimate is computed on request only.
+
+        It does not depend on the number of ranks, and agrees with the fields."""
         self.assertNotIn("error_estimate", self.run_scene("verification/free_sides_2d.xml")["steps"][-1])
         self.assertNotIn(b"error density", (self.folder / "out/bulk/bulk_0001_0.vtu").read_bytes())
         relative = []
@@ -107,7 +109,7 @@ class Results(ProgramTest):
             for a, b, c in zip(f["mean_jump"]["global"], f["mean_elastic_jump"]["global"], f["mean_plastic_jump"]["global"]):
                 self.assertAlmostEqual(a, b + c, places=14)
             self.assertAlmostEqual(f["mean_jump"]["local"][0], f["mean_opening"], places=14)
-        # the sides are free, so what pushes the top is what holds the bottom
+        # with free sides, the reactions of top and bottom are in equilibrium
         top, bottom = step["reactions"]["north"], step["reactions"]["south"]
         for a, b in zip(top, bottom):
             self.assertAlmostEqual(a, -b, places=12)
@@ -124,7 +126,7 @@ class Results(ProgramTest):
 
     def test_state_fractions(self):
         r = self.run_scene("verification/cyclic_2d.xml", QUIET)
-        sliding = [0, 1, None, 0, 1, 0, 1, None]  # None: held at the limit, either word is right
+        sliding = [0, 1, None, 0, 1, 0, 1, None]  # None: at the friction limit, with either state
         for step, slip in zip(r["steps"], sliding):
             f = step["fractures"]["fracture"]
             self.assertEqual(f["fraction_open"], 0)
@@ -163,14 +165,14 @@ class Results(ProgramTest):
                         self.assertTrue((piece.parent / part).exists(), part)
 
     def test_steps_that_choose_themselves(self):
-        """Each says its length and what it errs in; pictures at the times of a schedule alone, tables at all."""
+        """Adaptive steps report length and estimated errors. Pictures are at scheduled times, tables at all steps."""
         results = self.run_scene("poro/shut_in_2d.xml", "Time.tolerance=0.1", "Time.schedule={18000, 36000, 72000, 144000}", "Output.every=2")
         steps, begin = results["steps"], 0
         for step in steps:
             self.assertAlmostEqual(step["length"], step["time"] - begin, delta=1e-9 * step["time"])
             begin = step["time"]
             self.assertTrue(all(value <= 0.1 for value in step.get("estimated_errors", {}).values()), step)
-        self.assertEqual(set(steps[0]["estimated_errors"]), {"loads"})  # of the first nothing else is known
+        self.assertEqual(set(steps[0]["estimated_errors"]), {"loads"})  # the first step has no other estimate
         self.assertIn("pressure", steps[-1]["estimated_errors"])
         times = [step["time"] for step in steps]
         for t in (3600, 18000, 19800, 36000, 72000, 144000):  # knots of the table, and the schedule
@@ -232,13 +234,13 @@ class Results(ProgramTest):
             self.assertRegex(told[0], "^warning: t = 0.333333: .*source_2d.xml: the fluid's pressure is below 0 in places")
 
     def test_rock_that_nothing_holds_is_told_once(self):
-        # the frame shrinks, lets go of the block in it (ax, ay < 0), and takes hold again
+        # the frame contracts, releases the block in it (ax, ay < 0), and grips it again
         scene, times = self.scene("contact/floating_2d.xml"), "Time.schedule={3, 3.75, 3.9, 4, 5}"
         words = "a piece of rock around (0.5, 0.5) (128 cells) can move along"
         for ranks in (1, 2):
             out, err = self.call("run", scene, "--output", "out", "--set", times, "--set", QUIET, ranks=ranks)
             self.assertEqual(re.findall("^warning: .*", err, re.MULTILINE), err.splitlines())
-            lines = [line for line in err.splitlines() if "over knots" not in line]  # the first step goes over some
+            lines = [line for line in err.splitlines() if "over knots" not in line]  # the first step passes some knots
             self.assertEqual(len(lines), 1, err)
             self.assertIn("t = 3.75: " + words, lines[0])
             self.assertEqual(re.findall("^.*held again", out, re.MULTILINE), ["t = 5: all rock is held again"])
@@ -270,11 +272,11 @@ class Results(ProgramTest):
                 for flag, fracture in zip(flags, fractures, strict=True):
                     if flag:
                         counts[names[int(fracture)]] = counts.get(names[int(fracture)], 0) + 1
-                self.assertLessEqual(set(cell_data(path, "state")), {0, 1, 2})  # the state before is there, too
+                self.assertLessEqual(set(cell_data(path, "state")), {0, 1, 2})  # including the previous state
             self.assertEqual(n_faces, r["mesh"]["fracture_faces"])
             self.assertEqual(counts, told)
         self.run_scene("contact/network_x.xml", "Time.schedule={1}", QUIET)
-        self.assertEqual(list((self.folder / "out").glob("unsettled*")), [])  # they were of another run
+        self.assertEqual(list((self.folder / "out").glob("unsettled*")), [])  # from the other run
 
     def test_much_friction_is_named_with_a_failure(self):
         slope = ("contact/incline_2d.xml", "Mesh.rotation=80", QUIET)
@@ -289,7 +291,7 @@ class Results(ProgramTest):
             self.assertEqual(note + ' "rough joint" is 1.732: ' in r["reason"], told, r["reason"])
 
     def test_cuts_are_counted(self):
-        # the sides follow the shear traction min(2/3 d_t, 0.18), so that substeps are exact
+        # the sides follow the shear traction min(2/3 d_t, 0.18), so substeps are exact
         path = ["Time.schedule={1}", "Tables.tangential.arguments={0, 1}", "Tables.tangential.values={0, 0.5}",
                 "Tables.shear.arguments={0, 0.54, 1}", "Tables.shear.values={0, 0.18, 0.18}", "Solver.tolerance=1e-10"]
         r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", "Time.maximum halvings=8", "Time.tethers=false", *path, QUIET)
@@ -317,7 +319,7 @@ class Results(ProgramTest):
             self.assertNotIn(word, usual["solver"]["parameters"])
 
     def test_inflows_are_numbers(self):
-        """Whether the pressure is given on the boundary, beyond it, or what flows there."""
+        """Inflows are numbers for boundaries with given pressure and with a conductance."""
         for overrides in ([], ["Boundary conditions.west.conductance=1e-9"]):
             inflows = self.run_scene("flow/network_2d.xml", *overrides, QUIET)["steps"][-1]["inflows"]
             self.assertEqual(set(inflows), {"west", "east"})

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the schema of scenes accepts and refuses: schema_test.py PROGRAM ROOT MPIEXEC"""
+"""Schema of scenes, for valid and invalid files: schema_test.py PROGRAM ROOT MPIEXEC"""
 import re
 import shutil
 import subprocess
@@ -17,7 +17,7 @@ class Schema(ProgramTest):
         path.write_text(text)
         done = subprocess.run(["xmllint", "--noout", "--relaxng", ROOT / "docs" / "sprekk.rng", path],
                               capture_output=True, text=True)
-        self.assertIn(done.returncode, (0, 3), done.stderr)  # 3: not valid; everything else is a failure of xmllint
+        self.assertIn(done.returncode, (0, 3), done.stderr)  # 3: invalid file; other statuses: failure of xmllint
         return done.returncode == 0
 
     def test_every_scene_is_valid(self):

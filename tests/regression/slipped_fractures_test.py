@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fractures inside of the rock that have slipped before and never slip further: slipped_fractures_test.py PROGRAM ROOT MPIEXEC
+"""Fractures inside the rock with initial slip and no further slip: slipped_fractures_test.py PROGRAM ROOT MPIEXEC
 
 The slip is uniform and the jump is zero at tips, so cells at tips deform. Faces under compression retain their slip."""
 import itertools
@@ -14,7 +14,7 @@ LOAD = {2: "{0, -0.05*t}", 3: "{0, 0, -0.05*t}"}
 
 class Slipped(ProgramTest):
     def run_slipped(self, dim, cell, tips, ranks):
-        """Cells too many for a direct solver in 3D; nothing but the slip and then the compression loads the rock."""
+        """Runs a case with the initial slip and then compression as the only loads. In 3D the solver is iterative."""
         lines = self.scene(f"seed/immersed_{dim}d.xml").read_text().splitlines()
         left = [line for line in lines if "friction coefficient" not in line and "tangential stiffness" not in line]
         (self.folder / "a.xml").write_text("\n".join(left))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes that change in stages: stages_test.py PROGRAM ROOT MPIEXEC"""
+"""Scenes with stages: stages_test.py PROGRAM ROOT MPIEXEC"""
 import csv
 import json
 import math
@@ -12,14 +12,14 @@ import xml.etree.ElementTree as ET
 import program
 from program import ProgramTest, main
 
-CYCLIC = "verification/cyclic_2d.xml"  # sliding and sticking in turn
+CYCLIC = "verification/cyclic_2d.xml"  # alternating slip and stick
 QUIET = "Output.vtu=false"
 E, NU, P1, P2 = 10e9, 0.25, -10e6, -5e6  # Pa; stress far from the gallery, along x and y
 G = E / (2 * (1 + NU))
 
 
 def entries(parent, values):
-    """Nested dictionaries as lists of parameters."""
+    """Writes nested dicts as parameter lists."""
     for name, value in values.items():
         if isinstance(value, dict):
             entries(ET.SubElement(parent, "ParameterList", name=name), value)
@@ -33,16 +33,16 @@ def entries(parent, values):
 
 
 def kirsch_displacement(x, y):
-    """Of rock that loses a disc of radius 1 (Kirsch 1898): plane strain, m."""
+    """Returns the displacement, m, after excavation of a disc of radius 1 (Kirsch 1898), plane strain."""
     r2, s, d = x * x + y * y, P1 + P2, P1 - P2
-    cos, sin = (x * x - y * y) / r2, 2 * x * y / r2  # of twice the angle
+    cos, sin = (x * x - y * y) / r2, 2 * x * y / r2  # of the double angle
     radial = (s + d * (4 * (1 - NU) - 1 / r2) * cos) / (4 * G)  # times r
     around = -d * (2 * (1 - 2 * NU) + 1 / r2) * sin / (4 * G)
     return [(radial * x - around * y) / r2, (radial * y + around * x) / r2]
 
 
 def kirsch_stress(x, y):
-    """XX, YY, XY of the same, with the stress before, Pa."""
+    """Returns the total stress XX, YY, XY, Pa, after this excavation."""
     r2, s, d = x * x + y * y, (P1 + P2) / 2, (P1 - P2) / 2
     cos, sin = (x * x - y * y) / r2, 2 * x * y / r2
     rr = s * (1 - 1 / r2) + d * (1 - 4 / r2 + 3 / r2**2) * cos
@@ -53,7 +53,7 @@ def kirsch_stress(x, y):
 
 
 def exact_far(share):
-    """The displacement as expressions."""
+    """Returns the far displacement as expressions of a scene, multiplied by the expression `share`."""
     d, s = P1 - P2, P1 + P2
     radial = f"(({s}) + ({d})*({4 * (1 - NU)} - 1/r2)*(x^2 - y^2)/r2)/({4 * G})"
     around = f"(-({d})*({2 * (1 - 2 * NU)} + 1/r2)*2*x*y/r2)/({4 * G})"
@@ -70,7 +70,9 @@ class Stages(ProgramTest):
         return str(path)
 
     def mesh(self, n, dim):
-        """A disc of radius 1, "gallery", in one of radius 4; n cells along a quarter of the wall; in 3D a slab."""
+        """Returns the path of a mesh with a disc "gallery" of radius 1 in one of radius 4; in 3D a slab.
+
+        A quarter of the wall has n cells."""
         path = self.folder / f"kirsch_{dim}_{n}.msh"
         if not path.exists():
             subprocess.run(["gmsh", f"-{dim}", "-order", "2", "-format", "msh22", "-setnumber", "n", str(n), "-setnumber", "dim",
@@ -79,7 +81,9 @@ class Stages(ProgramTest):
         return str(path)
 
     def gallery(self, n=8, dim=2, steps=1, release=True):
-        """A round gallery in rock under stress. With `release` it takes as long as all steps after it."""
+        """Returns the scene of a round gallery in rock under stress.
+
+        With `release` the release takes all later steps."""
         share = "max(min(t - 1, 1), 0)" if release else "t < 1.5 ? 0 : 1"
         free = ["0"] if dim == 3 else []
         times = [1] + [1 + (k + 1) / steps for k in range(steps)] + [3]
@@ -104,12 +108,12 @@ class Stages(ProgramTest):
             "Output": {"vtu": False}}
 
     def probe(self, name, output="out"):
-        """Rows of its table."""
+        """Returns the rows of a probe's table."""
         with open(self.folder / output / f"probes/{name}.csv") as file:
             return list(csv.reader(file))[1:]
 
     def wall_cells(self, n, dim):
-        """The centres of some cells of the rock that have a face on the wall."""
+        """Returns the centres of some rock cells with a face on the wall."""
         with open(self.mesh(n, dim)) as file:
             lines = iter(file.read().splitlines())
         nodes, cells = {}, []
@@ -134,13 +138,13 @@ class Stages(ProgramTest):
         return centres[::max(1, len(centres) // 24)]
 
     def last(self, output="out"):
-        """What the last checkpoint holds: its content and the bytes of its values."""
+        """Returns the content of the last checkpoint and the bytes of its values."""
         folder = max((f for f in (self.folder / output / "checkpoints").glob("*") if f.name.isdigit()), key=lambda f: int(f.name))
         content = json.loads((folder / "manifest.json").read_text())["sealed"]["content"]
         return content, [piece.read_bytes() for piece in sorted(folder.glob("piece_*.h5"))]
 
     def test_nothing_changes_no_bit(self):
-        """A stage without a change, and one that says what is so already."""
+        """Stages without changes, or with equal values, leave the results bitwise identical."""
         options = [QUIET, "Output.checkpoints.steps=100"]
         plain = self.run_scene(CYCLIC, *options, output="plain")
         staged = self.run_scene(CYCLIC, *options, "Stages.none.time=3", "Stages.same.time=5",
@@ -152,7 +156,9 @@ class Stages(ProgramTest):
         self.assertNotEqual(plain["steps"][5]["fractures"], other["steps"][5]["fractures"])
 
     def test_weaker_joint(self):
-        """A block that slides loses friction: by hand, its shear stress is what is left of it, and the rest is slip."""
+        """A sliding block loses friction.
+
+        By hand, the new friction gives its shear stress, and the remaining displacement is slip."""
         weak = ["Stages.weak.time=2", "Stages.weak.Materials.joint.friction coefficient=0.3",
                 "Stages.weak.Tables.shear.values={0, 0.066666666666666667, 0.09, 0.09, 0.09, 0.09, 0.09, 0.09, 0.09}"]
         for ranks in (1, 3):
@@ -164,7 +170,7 @@ class Stages(ProgramTest):
             self.assertAlmostEqual(after["mean_slip"], 0.5 - 0.09 / 1 - 0.09 / 2, delta=1e-9)
 
     def test_conditions_end_and_begin(self):
-        """A displacement gives way to a traction."""
+        """A traction replaces a displacement condition."""
         scene = self.scene(CYCLIC)
         values = ["Stages.pull.time=1", "Stages.pull.without={Boundary conditions > moved}",
                   "Stages.pull.Boundary conditions.pulled.boundary=north",
@@ -199,7 +205,9 @@ class Stages(ProgramTest):
                     self.expect_same_bits("whole", "parts")
 
     def test_stopped_in_the_first_step_of_a_stage(self):
-        """Which takes long, for more iterations are needed than are allowed there; the run goes on with enough of them."""
+        """A signal stops the run in a long first step of a stage, with too few allowed iterations.
+
+        The restart allows more."""
         scene = ["Mesh.cells={150, 150}", "Time.maximum halvings=20", "Output.checkpoints.steps=10", "Stages.s.time=3",
                  "Stages.s.Materials.joint.friction coefficient=0.2", "Time.schedule={1, 2, 3, 4}"]
         def words(options, *more):
@@ -211,7 +219,7 @@ class Stages(ProgramTest):
         self.addCleanup(run.stderr.close)
         self.addCleanup(run.wait)
         self.addCleanup(run.kill)
-        while not (self.folder / "parts/bulk_0002.pvtu").exists():  # of the last step before
+        while not (self.folder / "parts/bulk_0002.pvtu").exists():  # last step of the previous stage
             self.assertIsNone(run.poll())
             time.sleep(0.01)
         time.sleep(0.3)
@@ -225,7 +233,7 @@ class Stages(ProgramTest):
         self.assertEqual((self.folder / "parts/effective_input.xml").read_text(), (self.folder / "whole/effective_input.xml").read_text())
 
     def test_restart_into_changed_stages(self):
-        """Later stages may be others; what has been may not, and the message says how to change it."""
+        """A restart may change later stages but not earlier ones. The message explains how to change them."""
         first = ["Output.checkpoints.steps=1", QUIET, "Stages.a.time=2", "Stages.a.Materials.joint.friction coefficient=0.5"]
         self.run_scene(CYCLIC, *first, "Time.schedule={1, 2, 3, 4}")
         b = ["Stages.b.time=4", "Stages.b.Materials.joint.friction coefficient=0.4"]
@@ -243,7 +251,7 @@ class Stages(ProgramTest):
         self.assertIn("they differ in: Materials", error)
 
     def test_errors_come_first(self):
-        """They name the stage, the place, the value, and what is allowed; nothing has been computed."""
+        """Errors name the stage, the place, the value and the allowed values, before any computation."""
         for options, message in (
                 (["Stages.s.time=-1"], 'Sprekk > Stages > s > "time": is -1 s: must be after the "start" of "Time", 0 s'),
                 (["Stages.s.without={}"], 'Sprekk > Stages > s > "time" (s): missing; it is required'),
@@ -280,7 +288,7 @@ class Stages(ProgramTest):
         self.assertIn("is 9 s, and the last step ends at 8 s: the stage never begins", warning)
 
     def test_kirsch(self):
-        """A round gallery, order 2: displacements of the wall to 0.1 % and stress beside it to 1 % of the largest."""
+        """Round gallery, order 2: wall displacements within 0.1 %, stress at the wall within 1 % of the largest."""
         for n, dim, ranks in ((16, 2, 1), (16, 2, 3), (16, 3, 1)):
             with self.subTest(n=n, dim=dim, ranks=ranks):
                 values = self.gallery(n, dim)
@@ -301,7 +309,7 @@ class Stages(ProgramTest):
                         self.assertLess(error, 1e-2, (name, x, y, seen))
 
     def square(self, steps, release=True, excavated=False, cell="triangle"):
-        """A square gallery between a fracture that it cuts, one beside it, and one that it takes away."""
+        """Returns the scene of a square gallery with three fractures: cut, at a distance, and inside."""
         box = {"cell": cell, "lower corner": [-12.0, -12.0], "upper corner": [12.0, 12.0], "cells": [24, 24],
                "regions": {"gallery": {"lower corner": [-2.0, -2.0], "upper corner": [2.0, 2.0]}},
                "fractures": {"cut": {"lower corner": [-8.0, 0.0], "upper corner": [8.0, 0.0]},
@@ -319,8 +327,9 @@ class Stages(ProgramTest):
         return {**scene, "Stages": {"excavation": {"time": 1.0, "excavate": ["gallery"], **({"release": 1.0} if release else {})}}}
 
     def test_fractures_that_a_gallery_meets(self):
-        """One ends at the wall, one is gone; what slides by more and more ends where it would if the gallery had always
-        been there, whatever the steps and the ranks."""
+        """A cut fracture ends at the wall, another is removed.
+
+        With monotone slip the end state is that with an initial gallery, for any steps and ranks."""
         always = self.run_scene(self.write(self.square(1, excavated=True)), "Time.schedule={1}")["steps"][-1]["fractures"]
         self.assertAlmostEqual(always["cut"]["area"], 12, delta=1e-12)
         self.assertEqual(always["inside"]["area"], 0)
@@ -337,8 +346,9 @@ class Stages(ProgramTest):
                         self.assertAlmostEqual(end[name][number], always[name][number], delta=tolerance, msg=(name, number))
 
     def test_order_in_the_step(self):
-        """Where the wall is pressed on and off while it is released, joints slide back and forth, and slip depends on the
-        path: a quarter of the step has less than a quarter of the error."""
+        """Slip depends on the path if the wall pressure varies during the release.
+
+        A quarter of the step reduces the error by more than 4."""
         press = ["Stages.excavation.Boundary conditions.lining.boundary=gallery",
                  "Stages.excavation.Boundary conditions.lining.confining pressure=1.2e8*max(t-1,0)*(2-t)*(t-1)"]
         ends = [self.run_scene(self.write(self.square(n)), *press)["steps"][-1]["fractures"] for n in (4, 16, 64, 256)]
@@ -350,10 +360,10 @@ class Stages(ProgramTest):
                 self.assertLess(after, before / 4, name)
 
     def test_wet_gallery(self):
-        """Water flows to the wall, and as much through the boundary when nothing changes any more."""
+        """Water flows to the wall. In the steady state the flow through the boundary is equal."""
         scene = self.scene("stages/gallery_2d.xml")
         coarse = [QUIET, "Mesh.cells={30, 30}", "Output.checkpoints.steps=1"]
-        # corners lie on this mesh, too, and the fractures that are odd metres away do not
+        # geometry moved to nodes of this coarse mesh, which has none at odd coordinates
         for name, ends in (("roof", "{-20, 4}, {14, 4}"), ("crossing", "{-24, 0}, {22, 0}"), ("wall", "{4, -20}, {4, 18}"),
                            ("steep", "{-2, 2}, {-2, 24}"), ("gallery", "{-4, -4}, {4, 2}")):
             lower, upper = ends.split("}, ")
@@ -387,8 +397,9 @@ class Stages(ProgramTest):
             self.assertEqual(self.results("parts")["stages"], results["stages"])
 
     def test_one_excavation_after_another(self):
-        """Where nothing slips the order does not matter, and what is half released is half way; what has slid is carried
-        to the mesh of the second."""
+        """Without slip the order of excavations does not matter, and half of a release gives half of the displacement.
+
+        Slip is transferred to the mesh of the second excavation."""
         def scene(excavated, friction=10.0):
             values = self.square(2, excavated=True)
             values["Materials"]["joint"]["friction coefficient"] = friction
@@ -424,7 +435,7 @@ class Stages(ProgramTest):
                     self.assertAlmostEqual(after[number], before[number], delta=1e-2 * before[number])
 
     def test_pressures_are_carried(self):
-        """A second after more of wet rock is taken away, pressures elsewhere and flow to the first wall are as they were."""
+        """One second after a further excavation in wet rock, pressures elsewhere and flow to the first wall persist."""
         options = [QUIET, "Mesh.cells={60, 60}", "Mesh.regions.niche.lower corner={20, -20}", "Mesh.regions.niche.upper corner={22, -18}",
                    "Stages.niche.time=4 d", "Stages.niche.excavate={niche}", "Stages.niche.release=1 d",
                    "Time.schedule={86400, 172800, 345600, 345601}"]
@@ -445,7 +456,7 @@ class Stages(ProgramTest):
     LOWER, UPPER, STIFFER = (10e9, 0.25), (4e9, 0.2), (30e9, 0.3)  # Young's moduli and Poisson's ratios
 
     def column(self, cell, order):
-        """Rock of height 1 under a region "upper" of height 2, on rollers; what is pressed is on top."""
+        """Returns a column of rock of height 1 below a region "upper" of height 2, on rollers, with a load on top."""
         dim = 2 if cell in ("triangle", "quadrilateral") else 3
         up, sides = dim - 1, ("west", "east", "south", "north")[:2 * (dim - 1)]
         bottom, top = (("south", "north"), ("bottom", "top"))[dim - 2]
@@ -469,9 +480,10 @@ class Stages(ProgramTest):
             "Time": {"schedule": [1.0, 1.25, 2.0, 3.0, 3.25, 4.0]}, "Output": {"vtu": False}}
 
     def test_fill_and_other_constants(self):
-        """A column that is pressed, unloaded while it is filled, then pressed on the fill, then of other rock: fills are
-        free of stress where they are placed, and stress goes on where constants change. Exact in 2D and 3D, in cells of
-        both orders, on several ranks, and through a restart."""
+        """A column is loaded, unloaded and filled, loaded again, then its constants change.
+
+        Fill is free of stress when placed. Changes of constants preserve the stress. The results are exact in 2D and
+        3D, for both orders, on several ranks, and after a restart."""
         modulus = lambda rock: rock[0] * (1 - rock[1]) / ((1 + rock[1]) * (1 - 2 * rock[1]))
         lower, fill, stiffer = (modulus(rock) for rock in (self.LOWER, self.UPPER, self.STIFFER))
         # at the face and on top: 2 MPa on the rock; unloaded; 5 MPa on the fill, twice; other constants; 9 MPa
@@ -500,8 +512,9 @@ class Stages(ProgramTest):
                 self.expect_same_bits("out", "parts")
 
     def test_springs_that_change(self):
-        """A column on springs that become stiffer: u = -p/k, then -(p' - p)/k' more; where some of it is excavated the
-        rest of the springs bear what they bore, whatever changed before."""
+        """A column on springs that become stiffer: u = -p/k, then -(p' - p)/k' more.
+
+        After excavation of a part, the other springs have the same forces, independently of earlier changes."""
         k, stiffer, E = 2e9, 5e9, 1e15
         for cell, ranks in (("triangle", 1), ("quadrilateral", 3), ("tetrahedron", 2)):
             with self.subTest(cell=cell, ranks=ranks):
@@ -519,7 +532,7 @@ class Stages(ProgramTest):
                 for row, u in zip(self.probe("face")[-4:], exact):
                     self.assertAlmostEqual(float(row[1 + up]), u, delta=1e-5 * 2e6 / k)
         ends = []
-        for early in (False, True):  # other constants while nothing is strained yet
+        for early in (False, True):  # changes of constants before any strain
             values = self.column("quadrilateral", 1)
             values["Mesh"]["cells"], values["Mesh"]["upper corner"] = [6, 6], [3.0, 3.0]
             values["Mesh"]["regions"] = {"upper": {"lower corner": [0.0, 2.0], "upper corner": [3.0, 3.0]},
@@ -543,7 +556,7 @@ class Stages(ProgramTest):
             self.assertAlmostEqual(a, b, delta=1e-9 * abs(ends[0][1]))
 
     def test_rock_that_no_entry_names(self):
-        """Regions of the mesh have the rock of the bulk: its change is theirs."""
+        """Regions without a section have the material of the bulk, and its changes."""
         values = self.column("quadrilateral", 1)
         del values["Regions"], values["Stages"]["fill"], values["Stages"]["grout"]
         values["Materials"]["lower"]["Young's modulus"] = "modulus"
@@ -557,8 +570,10 @@ class Stages(ProgramTest):
             self.assertAlmostEqual(a, b, delta=1e-9 * max(1e-4, abs(b)))
 
     def test_wet_fill(self):
-        """What fills a gallery in wet rock is at the initial pressure and free of stress where it is placed: with nothing
-        else that changes nothing moves in a moment, whatever its walls have moved."""
+        """Fill in wet rock has the initial pressure and no stress when placed.
+
+        Without further changes a short step causes no displacement, independently of earlier displacements of the
+        walls."""
         options = [QUIET, "Stages.excavation.release=1 d", "Stages.fill.time=20 d", "Stages.fill.backfill={gallery}",
                    "Stages.fill.Regions.gallery.material=granite",
                    "Stages.fill.without={Boundary conditions > seepage}", "Time.schedule={86400, 172800, 1728000, 1728001}",
@@ -585,12 +600,13 @@ class Stages(ProgramTest):
                     self.assertAlmostEqual(a, b, delta=1e-7)
 
     def test_springs_count_from_their_stage(self):
-        """A gallery under equal stress from all sides, with a lining of springs when half of it is released: these share
-        the other half, p = k (u(end) - u(half)), u = (P - p)/(2 G) at a wall of radius 1; then softer ones, which change
-        nothing."""
+        """A gallery under isotropic stress gets a lining of springs after half of the release.
+
+        The springs share the other half, p = k (u(end) - u(half)), with u = (P - p)/(2 G) at a wall of radius 1.
+        Later changes of the springs have no effect."""
         P, k = 10e6, 8e9
         values = self.gallery(8)
-        held = P * k / (2 * G) / 2 / (1 + k / (2 * G))  # by springs at the end
+        held = P * k / (2 * G) / 2 / (1 + k / (2 * G))  # spring traction at the end
         values["Bulk"]["initial stress"] = [-P, -P, 2 * NU * -P, 0.0]
         share = "max(min(t - 1, 1), 0)"
         values["Expressions"] = {"r2": "x^2 + y^2", **{f"u{a}": f"-(t <= 1 ? 0 : t <= 2 ? {P}*(t - 1)/2 : {P - held})/(2*{G})*{a}/r2" for a in "xy"}}
@@ -611,7 +627,7 @@ class Stages(ProgramTest):
                         self.assertAlmostEqual(softer[i], end[i], delta=1e-9 * P / (2 * G))
 
     def test_end_does_not_depend_on_steps(self):
-        """Where nothing slips: at once, in one step and in five."""
+        """Without slip the end state does not depend on the steps: without release, in one step, in five."""
         ends = []
         for steps, release in ((1, False), (1, True), (5, True)):
             self.run_scene(self.write(self.gallery(4, steps=steps, release=release)))
