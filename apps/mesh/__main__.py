@@ -21,9 +21,9 @@ def arguments(words):
     parser.add_argument("scene", help="XML file")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="the mesh, NAME.msh")
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="override an entry of the scene; may be repeated")
-    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the mesh, too")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="also draw the mesh")
     parser.add_argument("--run", action="store_true", help=argparse.SUPPRESS)  # for a run with this mesh folder
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors and, now and then, what takes long")
+    parser.add_argument("--quiet", action="store_true", help="print only errors and messages about long operations")
     parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # path of the program, set by the launcher
     return parser.parse_args(words)
 

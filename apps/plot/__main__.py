@@ -33,7 +33,7 @@ def arguments(words):
     parser.add_argument("--time", type=float, metavar="T", help="draw the step written nearest to T (default: the last)")
     parser.add_argument("--warp", type=float, metavar="FACTOR", help="factor on the displacement (default: a visible one)")
     parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: 150)")
-    parser.add_argument("--whole", action="store_true", help="cut nothing away in 3D")
+    parser.add_argument("--whole", action="store_true", help="show the whole body in 3D, without a cut")
     parser.add_argument("--paraview", action="store_true",
                         help="write paraview.py instead, which ParaView opens with File > Load State")
     return parser.parse_args(words)

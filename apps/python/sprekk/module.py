@@ -116,8 +116,8 @@ class FaceLaw(Module):
     def shear(self, w, traction, state):
         """Returns T [face, n], Pa, at the jump w [face, dim], m, and the contact traction [face, dim], Pa.
 
-        The normal component comes first. The jump at the start of the step is
-        state.histories["jump"]; state.rate is 1/dt."""
+        The normal component comes first. state.histories["jump"] is the jump at the start of the
+        step, state.rate is 1/dt."""
         raise NotImplementedError
 
     def shear_derivative(self, w, traction, state):
