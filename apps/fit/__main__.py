@@ -32,10 +32,12 @@ def arguments(words):
     parser.add_argument("--parameter", action="append", required=True, metavar="NAME[=LOW..HIGH]",
                         help="an entry of the point's joint, or its path in the scene; starts from the scene's value, "
                         "within the bounds that the reference allows or those given, in the unit of the reference")
-    parser.add_argument("--along", required=True, metavar="COLUMN=OUTPUT", help="increasing column, the common abscissa")
-    parser.add_argument("--match", action="append", required=True, metavar="COLUMN=OUTPUT", help="compared column; may be repeated")
-    parser.add_argument("--until", type=float, metavar="X", help="fit rows up to this value of the column --along, in its unit, "
-                        "and predict the others")
+    parser.add_argument("--along", required=True, metavar="COLUMN=OUTPUT",
+                        help="increasing column, the common abscissa")
+    parser.add_argument("--match", action="append", required=True, metavar="COLUMN=OUTPUT",
+                        help="compared column; may be repeated")
+    parser.add_argument("--until", type=float, metavar="X",
+                        help="fit rows up to this value of the column --along, in its unit, and predict the others")
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="override an entry of the scene")
     parser.add_argument("--output", type=Path, metavar="DIR", help="write the picture there")
     parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: 150)")
