@@ -7,13 +7,14 @@
 A table is the result of an SQL query (SQLite) in a comment:
 
     <!-- query
-    SELECT "cells, state" AS state, unknowns, max FROM krylov
+    SELECT [cells, state] AS state, unknowns, max FROM krylov
     -->
     (table and source, written by this program)
     <!-- end -->
 
 Each file NAME.csv is a table NAME. The table NAME_results contains the results and targets in its header, with the
-columns "case", quantity, value and target.
+columns [case], quantity, value and target. Names with blanks and key words are written in brackets. The function
+number(value, format) formats as Python does, for instance number(mean, '.1f').
 
 Each number in the text of a page must be a value in a CSV file that a query of the page reads, rounded to the digits of
 the text, or a number in a table. In README.md, the section on accuracy and speed is checked against the CSV files of
@@ -63,7 +64,7 @@ class Source:
         rows = [[number(cell) for cell in row] for row in self.rows]
         tables = ((self.name, self.columns, rows), (f"{self.name}_results", RESULTS, self.results))
         for name, columns, content in tables:
-            names = ", ".join('"' + column.replace('"', '""') + '"' for column in columns)
+            names = ", ".join(f"[{column}]" for column in columns)
             connection.execute(f"CREATE TABLE {name} ({names})")
             connection.executemany(f"INSERT INTO {name} VALUES ({', '.join('?' * len(columns))})", content)
 
@@ -83,11 +84,17 @@ def pairs(line):
     return re.findall(r"(\w+)=(\S+)", line)
 
 
+def formatted(value, how):
+    return format(value, how).replace("%", " %") if isinstance(value, (int, float)) else value
+
+
 def shown(value):
     return "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def table(connection, sql):
+    if '"' in sql:  # SQLite takes an unknown "name" as text
+        raise sqlite3.OperationalError("write names of columns as [name], not in double quotes,")
     cursor = connection.execute(sql)
     names = [column[0] for column in cursor.description]
     rows = [[shown(value) for value in row] for row in cursor]
@@ -96,7 +103,7 @@ def table(connection, sql):
 
 
 def read_by(sql, sources):
-    return [source for source in sources if re.search(rf"\b{source.name}(_results)?\b", sql)]
+    return [source for source in sources if re.search(rf"\b(FROM|JOIN)\s+{source.name}(_results)?\b", sql)]
 
 
 def matches(text, values):
@@ -149,6 +156,7 @@ def main():
     folder, wrong = options.root / "docs/results", []
     sources = [Source(file) for file in sorted(folder.glob("*.csv"))]
     connection = sqlite3.connect(":memory:")
+    connection.create_function("number", 2, formatted)
     for source in sources:
         source.load(connection)
     for page in sorted(folder.glob("*.md")):

@@ -37,7 +37,7 @@ The target is {target}, as in Ye (2018), with a residual of `1e-9`. Measured are
 in the mean, a growth of 3.1e-2 and a share of 12.5 %.
 
 <!-- query
-SELECT "cells, state" AS state, printf('%.1f', mean) AS mean FROM krylov
+SELECT [cells, state] AS state, number(mean, '.1f') AS mean FROM krylov
 -->
 <!-- end -->
 
@@ -116,6 +116,12 @@ class Pages(unittest.TestCase):
     def test_wrong_query(self):
         self.replace(self.page, "FROM krylov\n", "FROM krilov\n")
         self.fails_with("speed.md", "no such table: krilov")
+
+    def test_wrong_column(self):
+        self.replace(self.page, "[cells, state]", "[cells, sate]")
+        self.fails_with("no such column: cells, sate")
+        self.replace(self.page, "[cells, sate]", '"cells, sate"')
+        self.fails_with("not in double quotes")
 
     def test_csv_without_header(self):
         self.replace(self.table, "# command", "# comand")
