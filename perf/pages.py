@@ -16,9 +16,10 @@ Each file NAME.csv is a table NAME. The table NAME_results contains the results 
 columns [case], quantity, value and target. Names with blanks and key words are written in brackets. The function
 number(value, format) formats as Python does, for instance number(mean, '.1f').
 
-Each number in the text of a page must be a value in a CSV file that a query of the page reads, rounded to the digits of
-the text, or a number in a table. In README.md, the section on accuracy and speed is checked against the CSV files of
-the measurements that it names. Code, formulas and years of papers are not checked: write inputs as `code`."""
+Each number in the text of a page must be in a table of the page or in the header of a CSV file that a query of the page
+reads, rounded to the digits of the text. In README.md, all numbers in a line of the section on accuracy and speed must
+be in one row of a CSV file of the measurements that it names. Code, formulas and years of papers are not checked: write
+inputs as `code`."""
 import argparse
 import csv
 import re
@@ -73,11 +74,16 @@ class Source:
         return (f"[{self.name}.csv]({self.name}.csv): `{self['command']}`, commit {self['commit']}, {self['date']}. "
                 f"Machine: {machine or 'not recorded'}.")
 
-    def values(self):
-        """All numbers in the file."""
-        header = [value for key, value in self.header if key not in ("commit", "date")]
-        text = "\n".join([*(",".join(row) for row in self.rows), *header])
-        return {abs(float(found)) for found in re.findall(r"(?<![A-Za-z_.\d])\d+(?:\.\d+)?(?:e[-+]?\d+)?", text)}
+    def records(self):
+        """The numbers of each row, and of each line of the header."""
+        return [*(values_in(",".join(row)) for row in self.rows), *self.header_values()]
+
+    def header_values(self):
+        return [values_in(value) for key, value in self.header if key not in ("commit", "date")]
+
+
+def values_in(text):
+    return {abs(float(found)) for found in re.findall(r"(?<![A-Za-z_.\d])\d+(?:\.\d+)?(?:e[-+]?\d+)?", text)}
 
 
 def pairs(line):
@@ -123,12 +129,24 @@ def numbers(text):
     return [(text.count("\n", 0, found.start()) + 1, found[0].strip()) for found in NUMBER.finditer(text)]
 
 
-def unfounded(place, text, sources, tables=""):
-    values = set().union(*(source.values() for source in sources))
-    values |= {abs(float(found)) for found in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?", tables)}
-    files = ", ".join(f"{source.name}.csv" for source in sources) or "none"
-    return [f"{place}:{line}: {found} is not in the CSV files of this page ({files})"
+def unfounded(place, text, sources, tables):
+    """Numbers in the text that are neither in the tables of the page nor in the header of a source."""
+    values = values_in(tables).union(*(values for source in sources for values in source.header_values()))
+    return [f"{place}:{line}: {found} is neither in the tables of this page nor in a header ({named(sources)})"
             for line, found in numbers(text) if not matches(found, values)]
+
+
+def unfounded_lines(place, text, sources):
+    """Lines whose numbers are not together in one row or line of the header."""
+    records = [record for source in sources for record in source.records()]
+    for k, line in enumerate(text.splitlines(), 1):
+        found = [number for _, number in numbers(line)]
+        if not any(all(matches(number, record) for number in found) for record in records) and found:
+            yield f"{place}:{k}: no row of the CSV files has {', '.join(found)} ({named(sources)})"
+
+
+def named(sources):
+    return ", ".join(f"{source.name}.csv" for source in sources) or "none"
 
 
 def filled(page, sources, connection):
@@ -171,8 +189,8 @@ def main():
     readme = (options.root / "README.md").read_text()
     section = README_SECTION.search(readme)
     lines = "\n" * readme.count("\n", 0, section.start()) + section[0] if section else ""
-    named = set(re.findall(r"\bperf (\w+)", lines))
-    wrong += unfounded("README.md", lines, [source for source in sources if source["command"].split()[2] in named])
+    measured = set(re.findall(r"\bperf (\w+)", lines))
+    wrong += unfounded_lines("README.md", lines, [one for one in sources if one["command"].split()[2] in measured])
     print(*wrong, sep="\n", end="\n" * bool(wrong))
     return 1 if wrong else 0
 
