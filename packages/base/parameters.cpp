@@ -55,7 +55,7 @@ void Section::named_expressions(Expression::Named& target, const std::string& na
   names_.push_back(name);
   Section middle = child(name);
   if (mode_ == Mode::document) {
-    const std::string what = "an expression of x, y, z, t, and of other names";
+    const std::string what = "expression of x, y, z, t and of other names";
     specification_.sections.push_back(
         {name, meaning, {{"", type_name(Expression()), "-", "absent", what, any(), false, {}}}, {}});
   } else if (mode_ == Mode::write) {

@@ -76,10 +76,13 @@ std::string attributes_of(const EntrySpecification& entry) {
                      is_real && entry.unit != "-" ? "_with_unit" : "");
 }
 
-std::string element(const std::string& tag, const std::string& name, const std::string& content) {
+std::string element(const std::string& tag, const std::string& name, const std::string& meaning,
+                    const std::string& content) {
   const std::string value = name.empty() ? "<text/>" : fmt::format("<value>{}</value>", xml_escaped(name));
-  return fmt::format("    <element name=\"{}\">\n      <attribute name=\"name\">{}</attribute>\n{}    </element>\n",
-                     tag, value, content);
+  const std::string documentation =
+      meaning.empty() ? "" : fmt::format("      <a:documentation>{}</a:documentation>\n", xml_escaped(meaning));
+  return fmt::format("    <element name=\"{}\">\n{}      <attribute name=\"name\">{}</attribute>\n{}    </element>\n",
+                     tag, documentation, value, content);
 }
 
 std::string reference_to(const std::string& name) { return fmt::format("      <ref name=\"{}\"/>\n", name); }
@@ -97,16 +100,16 @@ std::string section_definitions(const SectionSpecification& section, const std::
   std::string optional, inner;
   std::vector<std::string> required;
   for (const auto& entry : section.entries) {
-    const std::string one = element("Parameter", entry.name, attributes_of(entry));
+    const std::string one = element("Parameter", entry.name, entry.meaning, attributes_of(entry));
     entry.required ? required.push_back(one) : void(optional += one);
   }
   for (const auto& child : section.sections) {
     const std::string inside = path + "." + (child.name.empty() ? "NAME" : child.name);
-    optional +=
-        child.open ? element("ParameterList", child.name, reference_to("anything")) : reference_to(identifier(inside));
+    optional += child.open ? element("ParameterList", child.name, child.meaning, reference_to("anything"))
+                           : reference_to(identifier(inside));
     if (!child.open) inner += section_definitions(child, inside);
   }
-  std::string text = definition(name, element("ParameterList", section.name,
+  std::string text = definition(name, element("ParameterList", section.name, section.meaning,
                                               reference_to(fmt::format("{}.{}", name, (1 << required.size()) - 1))));
   for (int needed = 0; needed < 1 << required.size(); ++needed) {
     std::string content =
@@ -131,6 +134,7 @@ std::string to_relax_ng(const std::vector<SectionSpecification>& roots) {
   std::string text =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<grammar xmlns=\"http://relaxng.org/ns/structure/1.0\" "
+      "xmlns:a=\"http://relaxng.org/ns/compatibility/annotations/1.0\" "
       "datatypeLibrary=\"http://www.w3.org/2001/XMLSchema-datatypes\">\n";
   std::string starts, sections;
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -141,8 +145,8 @@ std::string to_relax_ng(const std::vector<SectionSpecification>& roots) {
   const std::string pair = "      <attribute name=\"type\"/>\n      <attribute name=\"value\"/>\n";
   return text + "  <start>\n" + choice(starts) + "  </start>\n" + value_definitions() +
          definition("anything", "    <zeroOrMore>\n" +
-                                    choice(element("Parameter", "", pair) +
-                                           element("ParameterList", "", reference_to("anything"))) +
+                                    choice(element("Parameter", "", "", pair) +
+                                           element("ParameterList", "", "", reference_to("anything"))) +
                                     "    </zeroOrMore>\n") +
          sections + "</grammar>\n";
 }

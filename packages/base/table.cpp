@@ -10,8 +10,8 @@
 namespace sprekk::base {
 
 void Table::describe(Section& section) {
-  section.required(arguments, "arguments", "-", any(), "points at which values are given, strictly increasing");
-  section.required(values, "values", "-", any(), "values at the arguments, linear in between");
+  section.required(arguments, "arguments", "-", any(), "arguments of the table, strictly increasing");
+  section.required(values, "values", "-", any(), "values of the function at the arguments, with linear interpolation");
   const std::string problem = defect();
   if (section.complete() && !problem.empty()) section.fail(problem);
 }

@@ -37,26 +37,30 @@ KOKKOS_INLINE_FUNCTION constexpr PiecewiseLinear<2> mobilised_friction() { retur
 
 inline Entry roughness_entry() {
   return Entry{"joint roughness coefficient", "-", base::at_least(0),
-               "JRC: by so many degrees the angle falls with every decade of the compression"}
+               "joint roughness coefficient JRC, the decrease of the friction angle in degrees per decade of "
+               "compression; from 0 (smooth) to 20 (rough) (Barton and Choubey 1977)"}
       .also_called({"JRC", "roughness"});
 }
 inline Entry wall_strength_entry() {
   return Entry{"joint wall strength", "Pa", base::positive(),
-               "JCS, the compression at which the roughness has no part any more"}
+               "joint wall compressive strength JCS, the compression at which roughness has no effect; for fresh walls "
+               "the uniaxial compressive strength of the rock (Barton and Choubey 1977)"}
       .also_called({"JCS", "wall strength"});
 }
 inline Entry length_entry() {
   return Entry{"joint length", "m", base::positive(),
-               "L_n: JRC and JCS are of samples, and scaled to joints of this length; absent: they are the joint's own"}
+               "length L_n of the joint, to which JRC and JCS of samples are scaled (Barton and Bandis 1982); absent: "
+               "no scaling"}
       .may_be_absent();
 }
 inline Entry sample_entry() {
-  return Entry{"sample length", "m", base::positive(), "L_0 of the samples that JRC and JCS were measured on"}.or_else(
-      0.1);
+  return Entry{"sample length", "m", base::positive(), "length L_0 of the samples with the measured JRC and JCS"}
+      .or_else(0.1);
 }
 inline Entry peak_slip_entry() {
   return Entry{"peak slip", "m", base::positive(),
-               "delta_p at which all roughness is mobilised; absent: from the joint length"}
+               "slip delta_p at full mobilisation of the roughness; absent: from the joint length; typical: 1 % of the "
+               "joint length (Barton and Choubey 1977)"}
       .may_be_absent();
 }
 

@@ -300,19 +300,19 @@ std::vector<std::string> defects(const BoxMesh& box) {
 }  // namespace
 
 void BoxMesh::Fracture::describe(base::Section& s) {
-  s.required(lower_corner, "lower corner", "m", base::any(), "lowest coordinates, before the rotation; on mesh planes");
+  s.required(lower_corner, "lower corner", "m", base::any(), "lowest coordinates before the rotation, on mesh planes");
   s.required(upper_corner, "upper corner", "m", base::any(),
-             "highest coordinates; equal to the lower corner's in the direction of the normal, and only there");
-  s.entry(
-      reference_normal, "reference normal", "-",
-      "the normal, from side - to side +, has a positive product with this vector, which turns with the box; without "
-      "it the last component (z, y, x) of the rotated normal that is not zero is positive");
-  s.entry(swap_sides, "swap sides", "-", "exchange side - and side +");
+             "highest coordinates before the rotation; equal to the lower corner in the direction of the normal and "
+             "only there");
+  s.entry(reference_normal, "reference normal", "-",
+          "reference vector of the orientation, which turns with the box: its product with the normal, from side - to "
+          "side +, is positive; absent: the last nonzero component (z, y, x) of the rotated normal is positive");
+  s.entry(swap_sides, "swap sides", "-", "exchange of side - and side +");
 }
 
 void BoxMesh::Region::describe(base::Section& s) {
-  s.required(lower_corner, "lower corner", "m", base::any(), "lowest coordinates, before the rotation");
-  s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates, before the rotation");
+  s.required(lower_corner, "lower corner", "m", base::any(), "lowest coordinates before the rotation");
+  s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates before the rotation");
 }
 
 void describe_periodic(base::Section& s, std::vector<std::string>& periodic, const std::string& meaning) {
@@ -324,10 +324,9 @@ void describe_periodic(base::Section& s, std::vector<std::string>& periodic, con
 }
 
 void describe_refinements(base::Section& s, int& refinements, const std::vector<std::string>& periodic) {
-  s.entry(
-      refinements, "refinements", "-", base::between(0, 20),
-      "how often every cell is cut into 4 (2D) or 8 (3D) smaller ones, by all ranks at once after the mesh has been "
-      "distributed: for meshes larger than the memory of one rank");
+  s.entry(refinements, "refinements", "-", base::between(0, 20),
+          "number of uniform refinements, each into 4 (2D) or 8 (3D) cells per cell, by all ranks in parallel after "
+          "the distribution of the mesh; for meshes larger than the memory of one rank");
   if (refinements > 0 && !periodic.empty())
     s.fail("refinements",
            fmt::format("is {}, must be 0 with \"periodic\"; make the cells smaller instead", refinements));
@@ -335,29 +334,31 @@ void describe_refinements(base::Section& s, int& refinements, const std::vector<
 
 void describe_tips(base::Section& s, std::string& tips) {
   s.choice(tips, "tips", {"enriched", "plain"},
-           "crack tips; enriched: displacements grow with the square root of the distance from them, at order 1 by "
-           "further unknowns, at order 2 by nodes at quarter points; plain: like the rest of the mesh");
+           "treatment of crack tips; enriched: displacements grow with the square root of the distance from the tip, "
+           "by further unknowns at order 1, by quarter-point nodes at order 2 (Barsoum 1976); plain: no enrichment");
 }
 
 void BoxMesh::describe(base::Section& s) {
   s.required_choice(cell, "cell", {cell_names.begin(), cell_names.end()}, "shape of the cells");
   s.required(lower_corner, "lower corner", "m", base::any(),
-             "lowest coordinates, before the rotation; 2 or 3 elements, which is the dimension");
-  s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates, before the rotation");
+             "lowest coordinates before the rotation; 2 or 3 elements, the dimension of the box");
+  s.required(upper_corner, "upper corner", "m", base::any(), "highest coordinates before the rotation");
   s.required(cells, "cells", "-", base::at_least(1),
-             "number of squares or cubes in each direction; a square makes 2 triangles, a cube 6 tetrahedra");
-  s.entry(order, "order", "-", base::between(1, 2), "of the displacement in each cell: 1 (linear) or 2 (quadratic)");
+             "number of squares or cubes per direction; a square contains 2 triangles, a cube 6 tetrahedra");
+  s.entry(order, "order", "-", base::between(1, 2),
+          "polynomial order of the displacement in each cell: 1 (linear) or 2 (quadratic)");
   describe_tips(s, tips);
-  s.named_sections(regions, "regions", "boxes of cells with a material of their own");
+  s.named_sections(regions, "regions", "boxes of cells with their own material");
   s.named_sections(fractures, "fractures", "plane fractures along mesh planes");
   s.entry(rotation, "rotation", "degree", base::between(-360, 360),
-          "angle, counter-clockwise about the origin, by which the box turns");
+          "rotation angle of the box, counter-clockwise about the origin");
   s.entry(rotation_axis, "rotation axis", "-", base::any().size(3), "axis of the rotation in 3D, through the origin");
-  describe_periodic(s, periodic,
-                    "directions (x, y, z, before the rotation) in which displacements on opposite sides are equal");
+  describe_periodic(
+      s, periodic,
+      "directions of periodicity (x, y, z before the rotation), with equal displacements on opposite sides");
   describe_refinements(s, refinements, periodic);
   s.entry(renumbering_seed, "renumbering seed", "-", base::at_least(0),
-          "seed of a random order of nodes and cells; without it the order is regular");
+          "seed of a random order of nodes and cells; absent: regular order");
   if (!s.complete()) return;
   for (const auto& defect : defects(*this)) s.fail(defect);
 }

@@ -48,30 +48,34 @@ void Quantity::describe(base::Section& s) {
   for (const auto& kind : kinds()) {
     names.push_back(kind.name);
     texts.push_back(fmt::format("{}: {}", kind.name, kind.text));
-    units.push_back(fmt::format("of {} in {}", kind.name, kind.unit) +
+    units.push_back(fmt::format("{} in {}", kind.name, kind.unit) +
                     (kind.unit == kind.unit_in_2d ? "" : fmt::format(" (2D: {})", kind.unit_in_2d)));
   }
-  s.required_choice(what, "quantity", names, fmt::format("{}", fmt::join(texts, "; ")));
-  s.entry(fractures, "fractures", "-", "over which it is taken together; absent: all");
+  s.required_choice(what, "quantity", names, fmt::format("quantity of interest; {}", fmt::join(texts, "; ")));
+  s.entry(fractures, "fractures", "-", "names of the fractures of the quantity; empty: all fractures");
   s.entry(boundary, "boundary", "-",
-          "of a reaction: where displacements are prescribed; of a flow: where its potential is");
-  s.entry(well, "well", "-", "of a pressure: with a rate; of a flow: with a pressure; of what that carries: any");
-  s.choice(component, "component", {"x", "y", "z"}, "of a reaction");
-  s.entry(relative, "relative", "-", base::between(1e-8, 1), "error by the value at the end of the run");
+          "boundary of a reaction, with prescribed displacements, or of a flow, with a prescribed potential");
+  s.entry(well, "well", "-",
+          "well of a pressure, with a given rate; of a flow, with a given pressure; of a carried quantity, any well");
+  s.choice(component, "component", {"x", "y", "z"}, "direction of the reaction force");
+  s.entry(relative, "relative", "-", base::between(1e-8, 1),
+          "tolerance of the error relative to the value at the end of the run");
   const auto own = unit(3);
   s.entry(absolute, "absolute",
           own == unit(2) && !own.empty() ? own
           : what.empty()                 ? "m"
                                          : "-",
-          base::positive(), fmt::format("error; {}", fmt::join(units, ", ")));
+          base::positive(), fmt::format("tolerance of the absolute error; {}", fmt::join(units, ", ")));
   if (s.complete() && !relative && !absolute) s.fail("needs \"relative\", \"absolute\", or both");
 }
 
 void Accuracy::describe(base::Section& s) {
-  s.named_sections(quantities, "quantities", "by names of your choice: numbers and the errors they may have");
-  s.entry(cells, "cells", "-", base::at_least(1), "no mesh is to have more");
-  s.entry(seconds, "seconds", "s", base::positive(), "of the clock, after which no finer mesh is begun; absent: any");
-  s.entry(memory, "memory", "-", base::positive(), "bytes of all ranks that no mesh is to need more of; absent: any");
+  s.named_sections(quantities, "quantities", "quantities of interest with tolerances, by names of your choice");
+  s.entry(cells, "cells", "-", base::at_least(1), "maximum number of cells of a mesh");
+  s.entry(seconds, "seconds", "s", base::positive(),
+          "wall-clock time after which no finer mesh begins; absent: no limit");
+  s.entry(memory, "memory", "-", base::positive(),
+          "maximum memory of all ranks for a mesh, in bytes; absent: no limit");
   if (s.complete() && quantities.empty()) s.fail("quantities", "missing; give at least one");
 }
 

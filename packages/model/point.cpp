@@ -53,21 +53,21 @@ std::string in_quotes(const std::string& text) {
 }  // namespace
 
 void PointPath::describe(base::Section& s) {
-  s.required(material, "material", "-", "name of a joint material, of this scene or of the library");
-  s.required(control, "control", "-", "per component n, t[, t2] what is prescribed: jump, traction, or column");
+  s.required(material, "material", "-", "name of a joint material of this scene or of the library");
+  s.required(control, "control", "-", "prescribed quantity per component n, t[, t2]: jump, traction, or column");
   std::string units;  // units of the components
   for (const auto& what : control) units += (units.empty() ? "" : ", ") + std::string(what == "traction" ? "Pa" : "m");
-  s.required(
-      path, "path", units.empty() ? "m or Pa" : units,
-      "per component the jump, the traction, or the displacement of the column's end: values or expressions of t");
+  s.required(path, "path", units.empty() ? "m or Pa" : units,
+             "values of the prescribed quantity per component, for a column the displacement of its end: values or "
+             "expressions of t");
   s.entry(normal_stiffness, "column normal stiffness", "Pa/m", base::at_least(0),
-          "k of a column in lambda_n = k (d_n - w_n)");
+          "normal stiffness k of a column in lambda_n = k (d_n - w_n)");
   s.entry(tangential_stiffness, "column tangential stiffness", "Pa/m", base::at_least(0),
-          "k of a column in lambda_t = k (d_t - w_t)");
-  s.entry(plastic_jump, "plastic jump", "m", base::any(),
-          "tangential plastic jump at the start, per tangential component");
+          "tangential stiffness k of a column in lambda_t = k (d_t - w_t)");
+  s.entry(plastic_jump, "plastic jump", "m", base::any(), "initial tangential plastic jump, per tangential component");
   s.entry(initial_traction, "initial traction", "Pa", base::any(),
-          "per component n, t[, t2], at the start: jumps and displacements then count from the jump under it");
+          "initial traction per component n, t[, t2]; jumps and displacements are relative to the jump under this "
+          "traction");
   if (!s.complete()) return;
   if (control.size() < 2 || control.size() > 3) s.fail("control", "needs 2 components (2D) or 3 (3D)");
   if (path.size() != control.size())
@@ -86,14 +86,15 @@ void PointPath::describe(base::Section& s) {
 }
 
 void PointScene::describe(base::Section& s) {
-  s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name");
-  s.named_expressions(expressions, "Expressions", "what all other expressions may call by name");
+  s.named_sections(tables, "Tables", "piecewise linear functions for use in expressions by name");
+  s.named_expressions(expressions, "Expressions", "named expressions for use in all other expressions");
   s.expressions_call(tables, expressions);
-  s.named_sections(materials, "Materials", "joints, by names of your choice");
-  s.section(time, "Time", "steps");
+  s.named_sections(materials, "Materials", "joint materials by names of your choice");
+  s.section(time, "Time", "time steps of the run");
   std::optional<PointPath> one;
-  s.section(one, "Point", "what drives the point");
-  s.named_sections(specimens, "Specimens", "several points instead of one, by names of your choice");
+  s.section(one, "Point", "path of the joint at one point");
+  s.named_sections(specimens, "Specimens",
+                   "paths of several points, by names of your choice, in place of the section Point");
   if (!s.complete()) return;
   if (time.chooses_steps())
     s.fail_inside(

@@ -16,22 +16,23 @@ namespace sprekk::model {
 
 void Time::describe(base::Section& s) {
   s.entry(start, "start", "s", "time of the initial state");
-  s.entry(end, "end", "s", "end of the last step");
+  s.entry(end, "end", "s", "end time of the last step");
   s.entry(steps, "steps", "-", base::between(1, 10000000), "number of equal steps from start to end; absent: 1");
   s.entry(schedule, "schedule", "s",
-          "ends of all steps, increasing; replaces end and steps; with tolerance, times that steps are to end at");
+          "end times of all steps, increasing, in place of end and steps; with tolerance: required end times of steps");
   s.entry(tolerance, "tolerance", "-", base::between(1e-8, 0.5),
-          "relative time error that adaptive steps meet, see docs/use/time_and_solver.md; instead of steps");
+          "relative time error of adaptive steps, in place of steps; see docs/use/time_and_solver.md");
   s.entry(newton_iterations, "target Newton iterations", "-", base::between(1, 1000),
-          "steps become shorter where Newton's method takes more, and longer where it takes less; with tolerance, no "
-          "longer than that allows");
+          "target number of Newton iterations per adaptive step: more iterations shorten the steps, fewer lengthen "
+          "them; the tolerance also limits the length");
   s.entry(first_step, "first step", "s", base::positive(),
-          "its length, of steps that are chosen; absent: a part of all");
+          "length of the first adaptive step; absent: a fraction of the total time");
   s.entry(smallest_step, "smallest step", "s", base::positive(),
-          "which is taken whatever it errs in; absent: 1e-9 of all");
-  s.entry(largest_step, "largest step", "s", base::positive(), "absent: as long as all");
+          "minimum length of adaptive steps, accepted with any error; absent: 1e-9 of the total time");
+  s.entry(largest_step, "largest step", "s", base::positive(),
+          "maximum length of adaptive steps; absent: the total time");
   s.choice(scheme, "scheme", {"implicit Euler", "BDF2"},
-           "of rates of what is stored: of first or second order in time");
+           "scheme of time derivatives; implicit Euler: first order; BDF2: second order");
   stepping.describe(s);
   if (!s.complete()) return;
   describe_choice(s);
@@ -77,47 +78,47 @@ std::vector<Real> Time::times() const {
 }
 
 void CheckpointTimes::describe(base::Section& s) {
-  s.entry(steps, "steps", "-", base::at_least(1), "after every so many steps");
-  s.entry(minutes, "minutes", "min", base::positive(), "when so much time has passed since the last one");
+  s.entry(steps, "steps", "-", base::at_least(1), "interval of checkpoints in steps");
+  s.entry(minutes, "minutes", "min", base::positive(), "interval of checkpoints in wall-clock time");
   if (s.complete() && !steps && !minutes) s.fail("needs \"steps\", \"minutes\", or both");
 }
 
 void Output::describe(base::Section& s) {
-  s.entry(vtu, "vtu", "-", "write bulk.pvd and fractures.pvd for ParaView");
-  s.entry(every, "every", "-", base::at_least(1), "write them after every so many steps, and after the last");
+  s.entry(vtu, "vtu", "-", "switch for bulk.pvd and fractures.pvd, for ParaView");
+  s.entry(every, "every", "-", base::at_least(1),
+          "interval of bulk.pvd and fractures.pvd, in steps; the last step is always written");
   s.entry(error_estimate, "error estimate", "-",
-          "estimate after every step how far stress, jumps and fluxes are off on this mesh: "
-          "error_estimate in results.json, and fields; costs a pass over all cells and, for jumps, a linear solve per "
-          "step");
-  s.choice(time_unit, "time unit", {"s", "min", "h", "d", "year"}, "of times in tables of probes and in pictures");
-  s.section(checkpoints, "checkpoints", "what --restart goes on from; one is also written after the last step");
+          "estimate of the error of stress, jumps and fluxes on this mesh after every step: error_estimate in "
+          "results.json, and fields; costs a pass over all cells and, for jumps, a linear solve per step");
+  s.choice(time_unit, "time unit", {"s", "min", "h", "d", "year"}, "unit of times in tables of probes and in pictures");
+  s.section(checkpoints, "checkpoints", "checkpoints for --restart; another checkpoint follows the last step");
 }
 
 void MeshFile::Fracture::describe(base::Section& s) {
   s.entry(reference_normal, "reference normal", "-",
-          "the normal, from side - to side +, has a positive product with this vector");
-  s.entry(swap_sides, "swap sides", "-", "exchange side - and side +");
+          "reference vector of the orientation: its product with the normal, from side - to side +, is positive");
+  s.entry(swap_sides, "swap sides", "-", "exchange of side - and side +");
 }
 
 void MeshFile::describe(base::Section& s) {
-  s.section(network, "network", "fractures of which `./sprekk mesh` makes the mesh, and `./sprekk run` before it runs");
+  s.section(network, "network",
+            "fracture network in place of a mesh file; `./sprekk mesh` and `./sprekk run` generate its mesh");
   s.entry(path, "path", "-",
-          "file of gmsh, version 2.2 or 4.1; relative to the scene's file; required but for a network under `./sprekk "
-          "run` and `check`, which make one");
+          "mesh file of gmsh, format 2.2 or 4.1, relative to the folder of the scene; required, except with a network "
+          "under `./sprekk run` and `check`");
   if (s.complete() && path.empty() && !network) s.fail("path", "missing; it is required: a file of gmsh");
-  s.entry(
-      order, "order", "-", base::between(1, 2),
-      "of the displacement in each cell: 2 adds nodes in the middle of edges to a file of order 1; absent: as in the "
-      "file");
+  s.entry(order, "order", "-", base::between(1, 2),
+          "polynomial order of the displacement in each cell: 1 (linear) or 2 (quadratic); 2 adds mid-edge nodes to a "
+          "file of order 1; absent: as in the file");
   mesh::describe_tips(s, tips);
   mesh::describe_periodic(
       s, periodic,
-      "boundaries in pairs, {a, b, c, d}: displacements on b equal those on a, of which b is the translate, and so on");
+      "pairs of periodic boundaries {a, b, c, d}: equal displacements on a and on its translate b, and on c and d");
   if (periodic.size() % 2 == 1)
     s.fail("periodic", fmt::format("has {}, must have an even number", base::counted(periodic.size(), "name")));
   mesh::describe_refinements(s, refinements, periodic);
   s.named_sections(fractures, "fractures",
-                   "the physical groups that are fractures, by their names; those of a network need not be listed");
+                   "physical groups of the fractures, by their names; the sets of a network need no section");
   if (network)
     for (const auto& [name, set] : network->fractures) fractures[name];
 }
@@ -132,16 +133,17 @@ void Scene::add_default_joints() {
 
 void Scene::describe(base::Section& s) {
   describe_expressions(s);
-  s.section(mesh_file, "Mesh file", "a mesh of gmsh, instead of the section Mesh");
+  s.section(mesh_file, "Mesh file", "mesh file of gmsh or fracture network, in place of the section Mesh");
   if (!mesh_file) s.section(mesh, "Mesh", "a box with plane fractures");
   describe_physics(s);
   if (default_joint) add_default_joints();
-  s.section(time, "Time", "steps");
-  s.section(solver, "Solver", "Newton's method");
-  s.section(output, "Output", "what is written beside results.json");
-  s.named_sections(stages, "Stages", "by names of your choice: what of the scene changes when, see docs/use/stages.md");
+  s.section(time, "Time", "time steps of the run");
+  s.section(solver, "Solver", "parameters of Newton's method");
+  s.section(output, "Output", "output in addition to results.json");
+  s.named_sections(stages, "Stages",
+                   "changes of the scene during the run, by names of your choice; see docs/use/stages.md");
   if (s.is_sound() && !s.documents()) check_stages(s, stages, time.start);
-  s.section(accuracy, "Accuracy", "numbers that are to be reached with a given error, on meshes that the run refines");
+  s.section(accuracy, "Accuracy", "quantities of interest with tolerances, on meshes that the run refines");
   if (accuracy && s.is_sound() && !s.documents()) check_accuracy(s);
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
 }

@@ -53,19 +53,19 @@ std::string remove(const std::string& path, Teuchos::ParameterList& list) {
 }  // namespace
 
 void Stage::describe(base::Section& s) {
-  s.required(time, "time", "s", "when it begins; a step ends there");
+  s.required(time, "time", "s", "begin of the stage, at the end of a step");
   s.entry(without, "without", "-",
-          "paths of sections and entries that are no longer there: Boundary conditions > pull");
+          "paths of sections and entries that the stage removes, e.g. Boundary conditions > pull");
   s.entry(excavate, "excavate", "-",
-          "regions that are taken away: their walls are boundaries by the same names, and fractures end there");
+          "names of regions that the stage excavates; their walls become boundaries of the same names, and fractures "
+          "end there");
   s.entry(
       backfill, "backfill", "-",
-      "regions that were taken away and are filled now, with the materials that \"Regions\" names: free of stress as "
-      "they are placed");
+      "names of excavated regions that the stage fills with the materials of \"Regions\", free of stress when placed");
   s.entry(release, "release", "s", base::positive(),
-          "time over which forces that are out of balance when the stage begins are let go, in proportion to the time; "
-          "absent: they are in its first step");
-  s.other_sections(changes, "entries of this section of the scene from now on; others stay as they were");
+          "duration of the linear release of unbalanced forces at the begin of the stage; absent: release in its first "
+          "step");
+  s.other_sections(changes, "entries of this section of the scene from this stage on; other entries remain");
   for (const char* name : constant_sections)
     if (changes.isParameter(name)) s.fail_inside(fmt::format("{}: a stage cannot change it", name));
   if (changes.isSublist("Fractures") && changes.sublist("Fractures").isParameter("material"))

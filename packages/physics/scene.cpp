@@ -12,8 +12,9 @@
 namespace sprekk::physics {
 
 void Material::describe(base::Section& s) {
-  s.required_choice(type, "type", {"elastic", "joint"}, "elastic: rock; joint: the surface of a fracture");
-  s.entry(source, "source", "-", "where the values come from");
+  s.required_choice(type, "type", {"elastic", "joint"},
+                    "type of the material; elastic: rock; joint: the surface of a fracture");
+  s.entry(source, "source", "-", "origin of the values, such as a publication");
   if (type != "joint") describe_rock(s);
   if (type != "elastic") describe_joint(s);
   if (!s.complete()) return;
@@ -22,9 +23,9 @@ void Material::describe(base::Section& s) {
 }
 
 void Bulk::describe(base::Section& s) {
-  s.required(material, "material", "-", "name of an elastic material, of this scene or of the library");
+  s.required(material, "material", "-", "name of an elastic material of this scene or of the library");
   s.entry(gravity, "gravity", "m/s^2", base::any(),
-          "acceleration per direction, e.g. {0, 0, -9.81}; adds the density times it to the body force");
+          "acceleration of gravity per direction, e.g. {0, 0, -9.81}; density times gravity adds to the body force");
   describe_parts(s);
   if (!s.complete()) return;
   check_parts(s);
@@ -32,9 +33,9 @@ void Bulk::describe(base::Section& s) {
 
 void Region::describe(base::Section& s) {
   s.entry(material, "material", "-",
-          "name of an elastic material, of this scene or of the library; absent: that of \"Bulk\"");
+          "name of an elastic material of this scene or of the library; absent: the material of \"Bulk\"");
   s.entry(excavated, "excavated", "-",
-          "its cells are taken away; its walls are a boundary of the same name, and fractures end there");
+          "excavation of the region: its walls form a boundary of the same name, and fractures end there");
   describe_parts(s);
   if (!s.complete()) return;
   check_parts(s);
@@ -42,9 +43,9 @@ void Region::describe(base::Section& s) {
 }
 
 void Fracture::describe(base::Section& s) {
-  const std::string meaning = "name of a joint material, of this scene or of the library";
+  const std::string meaning = "name of a joint material of this scene or of the library";
   if (material.empty())
-    s.required(material, "material", "-", meaning + "; that of \"Fractures\" where it is missing here");
+    s.required(material, "material", "-", meaning + "; the \"material\" of \"Fractures\" replaces a missing one");
   else
     s.entry(material, "material", "-", meaning);
   describe_parts(s);
@@ -52,17 +53,19 @@ void Fracture::describe(base::Section& s) {
 }
 
 void Probe::describe(base::Section& s) {
-  s.entry(
-      outputs, "outputs", "-",
-      "names of arrays of bulk.pvd or fractures.pvd, of numbers that results.json has of fractures, or of sums over "
-      "a boundary as \"reactions\"");
-  s.entry(point, "point", "m", base::any(), "coordinates: values at a point");
-  s.entry(line, "line", "m", base::any(), "coordinates of its first and its last point: values along it");
-  s.entry(points, "points", "-", base::between(2, 100000), "of the line, at equal distances, its ends among them");
-  s.entry(boundary, "boundary", "-", "name of a boundary: the \"value\" over its faces");
-  s.entry(region, "region", "-", "name of a region: the \"value\" over its cells");
-  s.entry(fracture, "fracture", "-", "name of a fracture, or of a set of them: the \"value\" over its faces");
-  s.choice(value, "value", {"mean", "maximum", "minimum", "integral"}, "over a boundary, a region or a fracture");
+  s.entry(outputs, "outputs", "-",
+          "names of arrays of bulk.pvd or fractures.pvd, of results of fractures in results.json, or of sums over a "
+          "boundary such as \"reactions\"");
+  s.entry(point, "point", "m", base::any(), "coordinates of a point, for values at this point");
+  s.entry(line, "line", "m", base::any(),
+          "coordinates of the first and the last point of a line, for values along this line");
+  s.entry(points, "points", "-", base::between(2, 100000),
+          "number of points of the line, at equal distances, including its ends");
+  s.entry(boundary, "boundary", "-", "name of a boundary, for the \"value\" over its faces");
+  s.entry(region, "region", "-", "name of a region, for the \"value\" over its cells");
+  s.entry(fracture, "fracture", "-", "name of a fracture or of a set of fractures, for the \"value\" over its faces");
+  s.choice(value, "value", {"mean", "maximum", "minimum", "integral"},
+           "kind of value over a boundary, a region or a fracture");
   describe_parts(s);
   if (!s.complete()) return;
   const int n = !point.empty() + !line.empty() + boundary.has_value() + region.has_value() + fracture.has_value();
@@ -78,11 +81,12 @@ void Probe::describe(base::Section& s) {
 }
 
 void BoundaryCondition::describe(base::Section& s) {
-  s.required(boundary, "boundary", "-", "name of a boundary of the mesh: west, east, south, north, bottom, top");
-  s.entry(region, "region", "-", "name of a region: the condition holds only on faces of its cells");
+  s.required(boundary, "boundary", "-",
+             "name of a boundary of the mesh; of a box: west, east, south, north, bottom, top");
+  s.entry(region, "region", "-", "name of a region, which restricts the condition to faces of its cells");
   s.entry(fracture, "fracture", "-",
-          "name of a fracture: the condition holds only where it ends on the boundary, per aperture and length; not of "
-          "displacements and tractions");
+          "name of a fracture, which restricts the condition to its end on the boundary, per aperture and length; not "
+          "for displacements and tractions");
   describe_parts(s);
   if (!s.complete()) return;
   if (fracture && region) s.fail("give either \"fracture\" or \"region\"");
@@ -95,26 +99,28 @@ void BoundaryCondition::describe(base::Section& s) {
 }
 
 void Scene::describe_expressions(base::Section& s) {
-  s.named_sections(tables, "Tables", "piecewise linear functions that expressions call by name, e.g. ramp(t)");
-  s.named_expressions(expressions, "Expressions", "what all other expressions may call by name, e.g. depth = 0.5 - y");
+  s.named_sections(tables, "Tables", "piecewise linear functions for use in expressions by name, e.g. ramp(t)");
+  s.named_expressions(expressions, "Expressions",
+                      "named expressions for use in all other expressions, e.g. depth = 0.5 - y");
   s.expressions_call(tables, expressions);
 }
 
 void Scene::describe_physics(base::Section& s) {
   s.named_sections(materials, "Materials",
-                   "rock and joints, by names of your choice; those of the material library need no section");
-  s.section(bulk, "Bulk", "the rock");
+                   "materials of rock and joints, by names of your choice; materials of the library need no section");
+  s.section(bulk, "Bulk", "properties of the rock");
   describe_parts(s);
-  s.named_sections(regions, "Regions", "what regions of the mesh have of their own, by their names");
-  s.named_sections(fractures, "Fractures", "a section for each fracture of the mesh that needs one",
-                   [&](base::Section& all, Fracture& first) {
-                     all.entry(default_joint, "material", "-",
-                               "name of a joint material: of fractures without a section, or without a \"material\"");
-                     first.material = default_joint.value_or("");
-                   });
+  s.named_sections(regions, "Regions", "properties of regions of the mesh, by their names");
+  s.named_sections(
+      fractures, "Fractures", "properties of fractures of the mesh, by their names",
+      [&](base::Section& all, Fracture& first) {
+        all.entry(default_joint, "material", "-",
+                  "name of the default joint material, for fractures without a section or without a \"material\"");
+        first.material = default_joint.value_or("");
+      });
   s.named_sections(boundary_conditions, "Boundary conditions",
-                   "by names of your choice; boundaries without one are free of traction");
-  s.named_sections(probes, "Probes", "by names of your choice: what is written of each step as a table of its own");
+                   "boundary conditions by names of your choice; boundaries without a condition are traction-free");
+  s.named_sections(probes, "Probes", "time series by names of your choice, each in its own table");
   std::vector<std::string> used = {bulk.material};
   for (const auto& [name, region] : regions)
     if (region.material) used.push_back(*region.material);

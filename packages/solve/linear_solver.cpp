@@ -41,21 +41,22 @@ void check_library_entries(base::Section& section, const Teuchos::ParameterList&
 }  // namespace
 
 void LinearSolverOptions::describe(base::Section& section) {
-  section.choice(type, "type", {"auto", "direct", "iterative"},
-                 "direct: MUMPS; iterative: Belos with multigrid; auto: direct up to the limits below");
-  section.entry(tolerance, "tolerance", "-", base::positive(), "relative residual asked of every linear solve");
-  section.entry(
-      forcing, "forcing", "-",
-      "iterative: end a solve early, while faces change state once two accuracies a hundred times apart lead to "
-      "the same states, and after that where Newton's method gains nothing from more");
-  section.entry(direct_limit_2d, "direct limit 2D", "-", "auto: most unknowns that are solved directly in 2D");
-  section.entry(direct_limit_3d, "direct limit 3D", "-", "auto: most unknowns that are solved directly in 3D");
-  section.entry(
-      reproducible, "reproducible", "-",
-      "factor on rank 0 alone; on several, MUMPS adds what comes first, and the last bits vary; absent: true if "
-      "checkpoints are asked for");
-  section.passthrough(mumps, "MUMPS", "ICNTL(i) and CNTL(i) of MUMPS, by these names");
-  section.passthrough(belos, "Belos", "parameters of Belos; \"Solver Type\" names another Krylov method");
+  section.choice(
+      type, "type", {"auto", "direct", "iterative"},
+      "method of linear solves; direct: MUMPS; iterative: Belos with multigrid; auto: direct up to the limits below");
+  section.entry(tolerance, "tolerance", "-", base::positive(), "relative residual of every linear solve");
+  section.entry(forcing, "forcing", "-",
+                "early end of iterative solves: while contact states change, if two accuracies a factor of 100 apart "
+                "give the same states; afterwards, if more accuracy does not improve Newton's method");
+  section.entry(direct_limit_2d, "direct limit 2D", "-",
+                "maximum number of unknowns for direct solves in 2D, with type auto");
+  section.entry(direct_limit_3d, "direct limit 3D", "-",
+                "maximum number of unknowns for direct solves in 3D, with type auto");
+  section.entry(reproducible, "reproducible", "-",
+                "bitwise reproducibility of direct solves on several ranks, by factorisation on rank 0 alone; absent: "
+                "true with checkpoints");
+  section.passthrough(mumps, "MUMPS", "control parameters of MUMPS by the names ICNTL(i) and CNTL(i)");
+  section.passthrough(belos, "Belos", "parameters of the library Belos; \"Solver Type\" selects another Krylov method");
   section.hint({"MueLu"},
                "It belongs to a block: Solver > Blocks > displacement > \"type\" MueLu, and \"MueLu\" beside it.");
   check_library_entries(section, mumps, belos);

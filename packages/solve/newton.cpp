@@ -171,14 +171,16 @@ StatusType solve_by(RCP<NOX::Solver::Generic>& solver, const RCP<NOX::Abstract::
 }  // namespace
 
 void NewtonOptions::describe(base::Section& section) {
-  section.entry(tolerance, "tolerance", "-", base::positive(), "largest measure of convergence, relative to the loads");
-  section.entry(max_iterations, "maximum iterations", "-", base::at_least(1), "Newton steps before a solve has failed");
-  section.entry(print, "print", "-", "print every Newton step");
+  section.entry(tolerance, "tolerance", "-", base::positive(),
+                "tolerance of the convergence measures, relative to the loads");
+  section.entry(max_iterations, "maximum iterations", "-", base::at_least(1),
+                "maximum number of Newton iterations per solve");
+  section.entry(print, "print", "-", "switch for output of every Newton iteration");
   section.section(linear_solver, "Linear solver", "solver of the linear systems");
   section.named_sections(linear_solver.preconditioner.blocks, "Blocks",
-                         "how the block of this name is preconditioned, where the solver is iterative");
-  section.section(linear_solver.preconditioner.sweep, "Sweep", "over the groups of blocks, where there are several");
-  section.passthrough(nox, "NOX", "parameters of NOX");
+                         "preconditioner of the block of this name, for the iterative solver");
+  section.section(linear_solver.preconditioner.sweep, "Sweep", "sweep over several groups of blocks");
+  section.passthrough(nox, "NOX", "parameters of the library NOX");
   check_methods(section, nox);
 }
 

@@ -5,22 +5,23 @@
 namespace sprekk::solve {
 void MultigridOptions::describe(base::Section& section) {
   section.entry(degree, "degree", "-", base::at_least(1),
-                "of Chebyshev's polynomial, the smoother; the finest level takes a higher one in flat cells");
+                "degree of the Chebyshev smoother (Adams et al. 2003); higher on the finest level in flat cells");
   section.entry(coarse_size, "coarsest level", "-", base::at_least(1),
-                "unknowns, at or below which a level is solved directly");
+                "number of unknowns up to which a level is solved directly");
   section.entry(least_of_a_rank, "least of a rank", "-", base::at_least(1),
-                "numbers of its matrix: a level of which ranks have fewer on average moves to fewer ranks");
+                "minimum mean number of matrix entries per rank; a smaller level moves to fewer ranks");
 }
 
 void BlockOptions::describe(base::Section& section) {
   section.choice(
       type, "type", {"auto", "multigrid", "MueLu", "Ifpack2", "Gauss-Seidel", "direct"},
-      "how the block, or the group that begins with it, is preconditioned; auto: multigrid where unknowns have "
-      "places, MueLu where a flow carries them, else Gauss-Seidel, and groups without a method of their own directly");
-  section.entry(with, "with", "-", "the block of whose group it is a part; absent: as the fields ask for");
-  section.section(multigrid, "multigrid", "type multigrid, or auto: Sprekk's own");
-  section.passthrough(muelu, "MueLu", "type MueLu: its parameters, over the defaults");
-  section.passthrough(ifpack2, "Ifpack2", "type Ifpack2: its parameters; \"type\" names the method, e.g. ILUT");
+      "preconditioner of the block or of the group that begins with it; auto: multigrid for unknowns with coordinates, "
+      "MueLu for advected unknowns, else Gauss-Seidel, and direct for groups without their own method");
+  section.entry(with, "with", "-", "name of the block whose group contains this block; empty: as the fields require");
+  section.section(multigrid, "multigrid", "multigrid method of Sprekk, for type multigrid or auto");
+  section.passthrough(muelu, "MueLu", "parameters of MueLu in place of the defaults, for type MueLu");
+  section.passthrough(ifpack2, "Ifpack2",
+                      "parameters of Ifpack2, for type Ifpack2; \"type\" selects the method, e.g. ILUT");
   const bool names_method = ifpack2.isType<std::string>("type");
   if (type != "auto" && type != "multigrid" && multigrid)
     section.fail("multigrid", "is given, but \"type\" is neither multigrid nor auto");
@@ -32,11 +33,10 @@ void BlockOptions::describe(base::Section& section) {
 
 void SweepOptions::describe(base::Section& section) {
   section.choice(type, "type", {"forward", "symmetric", "diagonal"},
-                 "forward: each group sees the corrections of those before; symmetric: and then, backward, of those "
-                 "after; diagonal: of none");
+                 "type of sweep; forward: each group uses the corrections of earlier groups; symmetric: forward, then "
+                 "backward; diagonal: no corrections of other groups");
   section.entry(order, "order", "-",
-                "the first block of every group, in the order of the sweep; absent: as the fields "
-                "come");
+                "first blocks of all groups, in the order of the sweep; empty: the order of the fields");
 }
 
 const BlockOptions& PreconditionerOptions::of(const std::string& block) const {

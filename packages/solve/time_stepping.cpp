@@ -26,11 +26,10 @@ void append(const std::vector<LinearReport>& from, std::vector<LinearReport>& to
 
 void TimeSteppingOptions::describe(base::Section& section) {
   section.entry(max_halvings, "maximum halvings", "-", base::between(0, 20),
-                "how often a step that fails is halved before the run ends");
-  section.entry(
-      tethers, "tethers", "-",
-      "where Newton fails, first tether the sides of fractures to each other, and let them go little by little; "
-      "after three halvings where shorter steps are easier to solve");
+                "maximum number of bisections of a failed step before the run ends");
+  section.entry(tethers, "tethers", "-",
+                "proximal continuation after a failed Newton solve: springs between the sides of fractures, gradually "
+                "relaxed to zero; only after three bisections if shorter steps are easier to solve");
 }
 
 NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {

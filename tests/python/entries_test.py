@@ -51,7 +51,7 @@ class Entries(unittest.TestCase):
 
     def test_docstrings_tell_units_defaults_and_bounds(self):
         text = " ".join(Material.__doc__.split())
-        self.assertIn("youngs_modulus: E; give exactly two elastic constants (Pa; positive)", text)
+        self.assertIn("youngs_modulus: Young's modulus E; exactly two elastic constants are required;", text)
         self.assertIn("(between 0 and 1; default 1)", text)
 
     def test_misspelt(self):

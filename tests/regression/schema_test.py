@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 import unittest
+from xml.etree import ElementTree
 
 from program import ROOT, ProgramTest, main
 
@@ -19,6 +20,14 @@ class Schema(ProgramTest):
                               capture_output=True, text=True)
         self.assertIn(done.returncode, (0, 3), done.stderr)  # 3: invalid file; other statuses: failure of xmllint
         return done.returncode == 0
+
+    def test_meanings_are_those_of_the_reference(self):
+        schema = ElementTree.parse(ROOT / "docs" / "sprekk.rng")
+        in_schema = {one.text for one in schema.iter("{http://relaxng.org/ns/compatibility/annotations/1.0}documentation")}
+        rows = re.findall(r"^\|.*(?<!\\)\| (.*) \|$", (ROOT / "docs" / "use" / "reference.md").read_text(), re.MULTILINE)
+        meanings = {row.replace("\\|", "|") for row in rows} - {"meaning"}
+        self.assertGreater(len(meanings), 200)
+        self.assertEqual(meanings - in_schema, set())
 
     def test_every_scene_is_valid(self):
         self.assertGreater(len(SCENES), 15)

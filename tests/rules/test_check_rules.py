@@ -4,6 +4,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from check_reference import defect
 from check_rules import check
 
 KERNEL = "KOKKOS_INLINE_FUNCTION Real f(const View<Real*>& x) const {\n  %s\n}\n"
@@ -155,6 +156,13 @@ class CheckRules(unittest.TestCase):
 
     def test_good_sources_pass(self):
         self.assertEqual(violations(GOOD), [])
+
+    def test_meanings_start_with_a_noun(self):
+        for meaning in ("name of a boundary", "the box of cells", "Young's modulus E; typical", "two-point flux scheme"):
+            self.assertEqual(defect(meaning), "", meaning)
+        for meaning in ("gap", "of the fluid, with rate", "whether cells are cut", "mu of the bound", "K_n at zero traction",
+                        "auto: most unknowns that", "Which step is taken", "the 2D: x, y of a line"):
+            self.assertTrue(defect(meaning), meaning)
 
 
 if __name__ == "__main__":

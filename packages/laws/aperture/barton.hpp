@@ -15,7 +15,7 @@ struct BartonAperture {
   Real roughness = 0;  ///< JRC as given, that of the sample
   Real smooth = 0;     ///< aperture above which roughness has no effect, m
 
-  static constexpr const char *name = "Barton", *meaning = "smaller, by JRC, the narrower the joint is";
+  static constexpr const char *name = "Barton", *meaning = "smaller than the mechanical aperture, by JRC (rough walls)";
   static std::vector<Parameter<BartonAperture>> parameters() {
     return {{&BartonAperture::roughness, roughness_entry()}};
   }

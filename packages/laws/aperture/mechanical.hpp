@@ -7,7 +7,7 @@ namespace sprekk::laws {
 
 /// Hydraulic aperture of smooth walls, m: the mechanical aperture a.
 struct MechanicalAperture {
-  static constexpr const char *name = "mechanical", *meaning = "that by which the walls are apart, of smooth walls";
+  static constexpr const char *name = "mechanical", *meaning = "equal to the mechanical aperture (smooth walls)";
   static std::vector<Parameter<MechanicalAperture>> parameters() { return {}; }
 
   KOKKOS_INLINE_FUNCTION Real hydraulic(Real a) const { return a; }

@@ -13,15 +13,15 @@ struct ConstantBond {
   Real opening = 0;  ///< o_0, m
 
   static constexpr const char *name = "constant cohesion",
-                              *meaning = "shear strength of faces that touch, whatever they have slipped; no tension";
+                              *meaning =
+                                  "shear strength of faces in contact, independent of slip, without tensile strength";
   static std::vector<Parameter<ConstantBond>> parameters() {
-    return {
-        {&ConstantBond::shear,
-         Entry{"cohesion", "Pa", base::at_least(0), "c: what the bond adds to the bound on the shear traction"}},
-        {&ConstantBond::opening, Entry{"opening without cohesion", "m", base::at_least(0),
-                                       "o_0: faces that part lose c in proportion to their opening up to this; 0: "
-                                       "at once, after which there may be no equilibrium where some would just open"}
-                                     .or_else(0)}};
+    return {{&ConstantBond::shear, Entry{"cohesion", "Pa", base::at_least(0),
+                                         "cohesion c, the shear strength of the bond in addition to friction"}},
+            {&ConstantBond::opening, Entry{"opening without cohesion", "m", base::at_least(0),
+                                           "opening o_0 at which the cohesion reaches zero, after a linear decrease; "
+                                           "0: sudden loss, possibly without equilibrium at incipient opening"}
+                                         .or_else(0)}};
   }
 
   template <class T>

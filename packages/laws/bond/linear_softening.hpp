@@ -22,20 +22,23 @@ struct SofteningBond {
   Real shear_energy = 0;               ///< G_II, J/m^2
 
   static constexpr const char *name = "linear softening",
-                              *meaning = "tensile and shear strength that opening and slip use up";
+                              *meaning = "tensile and shear strength that decrease with opening and slip";
   static std::vector<Parameter<SofteningBond>> parameters() {
     using Law = SofteningBond;
     return {
-        {&Law::shear, Entry{"cohesion", "Pa", base::at_least(0), "c: shear strength of the bond, beside friction"}.with(
-                          "shear fracture energy")},
+        {&Law::shear, Entry{"cohesion", "Pa", base::at_least(0),
+                            "cohesion c, the shear strength of the bond in addition to friction"}
+                          .with("shear fracture energy")},
         {&Law::tensile,
-         Entry{"tensile strength", "Pa", base::at_least(0), "T, of the whole bond"}.or_else(0).with("fracture energy")},
+         Entry{"tensile strength", "Pa", base::at_least(0), "tensile strength T of the intact bond"}.or_else(0).with(
+             "fracture energy")},
         {&Law::energy, Entry{"fracture energy", "J/m^2", base::positive(),
-                             "G_I that opening dissipates per area until the bond is lost"}
+                             "fracture energy G_I, dissipated by opening until the bond is lost"}
                            .may_be_absent()},
-        {&Law::shear_energy, Entry{"shear fracture energy", "J/m^2", base::positive(),
-                                   "G_II that slip dissipates per area, beside friction, until the bond is lost"}
-                                 .may_be_absent()}};
+        {&Law::shear_energy,
+         Entry{"shear fracture energy", "J/m^2", base::positive(),
+               "fracture energy G_II, dissipated by slip in addition to friction until the bond is lost"}
+             .may_be_absent()}};
   }
   static std::vector<Quantity<SofteningBond>> quantities() {
     return {{"damage of bond", "-", "the part of its strengths that opening and slip have used up",

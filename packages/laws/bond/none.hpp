@@ -17,7 +17,7 @@ struct Cohesion {
 
 /// Joint without bond: no cohesion and no tensile strength.
 struct NoBond {
-  static constexpr const char *name = "none", *meaning = "faces bear no tension, and no shear without compression";
+  static constexpr const char *name = "none", *meaning = "no tension, and no shear without compression";
   static std::vector<Parameter<NoBond>> parameters() { return {}; }
 
   template <class T>

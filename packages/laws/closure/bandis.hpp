@@ -18,14 +18,17 @@ struct BandisClosure : BartonBandisClosure {
   Real aperture = 1;       ///< a, mechanical aperture without load, m
   Real cycle = 1;
 
-  static constexpr const char *name = "Bandis", *meaning = "hyperbolic, by JRC, JCS and aperture";
+  static constexpr const char *name = "Bandis", *meaning = "hyperbolic, by JRC, JCS and aperture (Bandis et al. 1983)";
   static std::vector<Parameter<BandisClosure>> parameters() {
     using Law = BandisClosure;
     return {{&Law::roughness, roughness_entry()},
             {&Law::wall_strength, wall_strength_entry()},
-            {&Law::aperture, Entry{"joint aperture", "m", base::positive(), "a, mechanical, of the unloaded joint"}},
-            {&Law::cycle,
-             Entry{"loading cycle", "-", base::at_least(1).to(3), "1: first loading; 3: after two cycles"}.or_else(1)}};
+            {&Law::aperture,
+             Entry{"joint aperture", "m", base::positive(),
+                   "mechanical aperture a of the unloaded joint; JRC/50 mm for fresh walls (Bandis et al. 1983)"}},
+            {&Law::cycle, Entry{"loading cycle", "-", base::at_least(1).to(3),
+                                "loading cycle, from 1 (first loading) to 3 (after two cycles) (Bandis et al. 1983)"}
+                              .or_else(1)}};
   }
   void complete() {
     const Real a = aperture * 1e3, strength = wall_strength / 1e6 / a;

@@ -15,17 +15,20 @@ struct BartonBandisClosure {
   Real maximum = std::numeric_limits<Real>::infinity();    ///< Du, m; 0: the joint does not close
   Real stiffness = std::numeric_limits<Real>::infinity();  ///< K_n at zero traction, Pa/m
 
-  static constexpr const char *name = "Barton-Bandis", *meaning = "hyperbolic (14)";
+  static constexpr const char *name = "Barton-Bandis", *meaning = "hyperbolic (14) (Bandis et al. 1983)";
   static std::vector<Parameter<BartonBandisClosure>> parameters() {
-    return {{&BartonBandisClosure::maximum, Entry{"maximum closure", "m", base::at_least(0).or_infinite(),
-                                                  "Du of the normal closure in (14); 0: none; infinite, or absent: "
-                                                  "closure is linear, the traction over K_n"}
-                                                .may_be_absent()
-                                                .with("normal stiffness")},
-            {&BartonBandisClosure::stiffness, Entry{"normal stiffness", "Pa/m", base::positive(),
-                                                    "K_n at zero traction; absent: the joint does not close"}
-                                                  .may_be_absent()
-                                                  .also_called({"kn", "jkn"})}};
+    return {
+        {&BartonBandisClosure::maximum,
+         Entry{"maximum closure", "m", base::at_least(0).or_infinite(),
+               "maximum closure Du in (14); 0: no closure; infinite or absent: linear closure, traction divided by "
+               "K_n; 6e-5 for a fresh joint with JRC 10 and JCS 100 MPa (Bandis et al. 1983)"}
+             .may_be_absent()
+             .with("normal stiffness")},
+        {&BartonBandisClosure::stiffness, Entry{"normal stiffness", "Pa/m", base::positive(),
+                                                "normal stiffness K_n at zero traction; absent: no closure; 2e10 for a "
+                                                "fresh joint with JRC 10 and JCS 100 MPa (Bandis et al. 1983)"}
+                                              .may_be_absent()
+                                              .also_called({"kn", "jkn"})}};
   }
 
   /// Returns B, m; negative under compression.

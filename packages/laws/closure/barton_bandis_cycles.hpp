@@ -16,13 +16,13 @@ struct BartonBandisCycles : BartonBandisClosure {
   Real retained = 0;                   ///< r
 
   static constexpr const char *name = "Barton-Bandis with memory",
-                              *meaning = "hyperbolic, a part of which unloading does not recover";
+                              *meaning = "hyperbolic, with a part that unloading does not recover";
   static std::vector<Parameter<BartonBandisCycles>> parameters() {
     std::vector<Parameter<BartonBandisCycles>> all;
     for (const auto& [number, entry] : BartonBandisClosure::parameters()) all.push_back({number, entry});
     all.push_back(
         {&BartonBandisCycles::retained, Entry{"irrecoverable part of closure", "-", base::at_least(0).below(1),
-                                              "r: of the closure under the largest compression so far"}});
+                                              "fraction r of the closure under the largest compression so far"}});
     return all;
   }
   static std::vector<Quantity<BartonBandisCycles>> quantities() {

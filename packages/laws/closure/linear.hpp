@@ -10,10 +10,11 @@ namespace sprekk::laws {
 struct LinearClosure {
   Real compliance = 0;  ///< 1/K_n, m/Pa
 
-  static constexpr const char *name = "linear", *meaning = "in proportion to the traction";
+  static constexpr const char *name = "linear", *meaning = "proportional to the traction";
   static std::vector<Parameter<LinearClosure>> parameters() {
-    return {
-        {&LinearClosure::compliance, Entry{"normal stiffness", "Pa/m", base::positive(), "K_n"}.converted(reciprocal)}};
+    return {{&LinearClosure::compliance,
+             Entry{"normal stiffness", "Pa/m", base::positive(), "normal stiffness K_n of the joint"}.converted(
+                 reciprocal)}};
   }
 
   template <class T>

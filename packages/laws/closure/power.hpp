@@ -16,13 +16,14 @@ struct PowerClosure {
   Real reference = 1;  ///< N_r, Pa
   Real exponent = 0;   ///< m
 
-  static constexpr const char *name = "power", *meaning = "at a stiffness that grows with a power of the compression";
+  static constexpr const char *name = "power", *meaning = "with a stiffness that grows with a power of the compression";
   static std::vector<Parameter<PowerClosure>> parameters() {
     using Law = PowerClosure;
-    return {{&Law::stiffness, Entry{"normal stiffness", "Pa/m", base::positive(), "K_n at zero traction"}},
-            {&Law::reference,
-             Entry{"stiffening stress", "Pa", base::positive(), "N_r: K_n (1 + N/N_r)^m is the normal stiffness"}},
-            {&Law::exponent, Entry{"stiffening exponent", "-", base::at_least(0), "m of the normal stiffness"}}};
+    return {
+        {&Law::stiffness, Entry{"normal stiffness", "Pa/m", base::positive(), "normal stiffness K_n at zero traction"}},
+        {&Law::reference, Entry{"stiffening stress", "Pa", base::positive(),
+                                "stress N_r in the normal stiffness K_n (1 + N/N_r)^m under the compression N"}},
+        {&Law::exponent, Entry{"stiffening exponent", "-", base::at_least(0), "exponent m of the normal stiffness"}}};
   }
 
   template <class T>

@@ -8,7 +8,7 @@ namespace sprekk::laws {
 
 /// Damage by slip: k = 1.
 struct SlipDriver {
-  static constexpr const char *name = "slip", *meaning = "slip counts as it is";
+  static constexpr const char *name = "slip", *meaning = "slip itself";
   static std::vector<Parameter<SlipDriver>> parameters() { return {}; }
 
   template <class T>
@@ -21,10 +21,11 @@ struct SlipDriver {
 struct CompressionDriver {
   Real reference = 1e6;  ///< sigma_r, Pa
 
-  static constexpr const char *name = "compression", *meaning = "slip times compression over the reference stress";
+  static constexpr const char *name = "compression",
+                              *meaning = "slip times compression divided by the reference stress";
   static std::vector<Parameter<CompressionDriver>> parameters() {
-    return {{&CompressionDriver::reference,
-             Entry{"reference stress", "Pa", base::positive(), "under which a slip counts in damage as it is"}}};
+    return {{&CompressionDriver::reference, Entry{"reference stress", "Pa", base::positive(),
+                                                  "reference stress, under which damage counts the slip itself"}}};
   }
 
   template <class T>
@@ -39,10 +40,10 @@ struct WorkDriver {
   Real reference = 1e6;  ///< sigma_r, Pa
 
   static constexpr const char *name = "frictional work",
-                              *meaning = "slip times shear traction over the reference stress";
+                              *meaning = "slip times shear traction divided by the reference stress";
   static std::vector<Parameter<WorkDriver>> parameters() {
-    return {{&WorkDriver::reference,
-             Entry{"reference stress", "Pa", base::positive(), "under which a slip counts in damage as it is"}}};
+    return {{&WorkDriver::reference, Entry{"reference stress", "Pa", base::positive(),
+                                           "reference stress, under which damage counts the slip itself"}}};
   }
 
   template <class T>

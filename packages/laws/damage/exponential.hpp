@@ -21,16 +21,16 @@ struct ExponentialDecay {
   static std::vector<Parameter<Law>> entries() {
     const Real none = std::numeric_limits<Real>::infinity();
     return {{&Law::friction, Entry{"residual part of friction", "-", base::at_least(0).to(1),
-                                   "of the bound of friction that damage leaves at last"}
+                                   "fraction of the friction bound that remains after complete damage"}
                                  .or_else(0)},
             {&Law::friction_length, Entry{"damage length of friction", "m", base::positive_or_infinite(),
-                                          "L of its exponential decay; infinite: it is not damaged"}
+                                          "length L of the exponential decay by damage; infinite: no damage"}
                                         .or_else(none)},
             {&Law::dilation, Entry{"residual part of dilation", "-", base::at_least(0).to(1),
-                                   "of the opening by slip that damage leaves at last"}
+                                   "fraction of the opening by slip that remains after complete damage"}
                                  .or_else(0)},
             {&Law::dilation_length, Entry{"damage length of dilation", "m", base::positive_or_infinite(),
-                                          "L of its exponential decay; infinite: it is not damaged"}
+                                          "length L of the exponential decay by damage; infinite: no damage"}
                                         .or_else(none)}};
   }
 
@@ -53,7 +53,7 @@ struct ExponentialDecay {
 /// Damage by slip in any direction. Lambda = sum of k |du|, the path length of slip weighted by the driver k.
 struct IsotropicDamage : ExponentialDecay {
   static constexpr int n_history = 1;  ///< Lambda
-  static constexpr const char *name = "isotropic", *meaning = "by slip in any direction";
+  static constexpr const char *name = "isotropic", *meaning = "wear by slip in any direction";
   static std::vector<Parameter<IsotropicDamage>> parameters() { return entries<IsotropicDamage>(); }
   static std::vector<Quantity<IsotropicDamage>> quantities() {
     auto all = told<IsotropicDamage>();
@@ -83,7 +83,8 @@ struct IsotropicDamage : ExponentialDecay {
 struct AnisotropicDamage : ExponentialDecay {
   static constexpr int n_history = 1 + DirectionFan::n_numbers;  ///< sum of k |du|, table of Lambda(m)
   static constexpr int n_history_2d = 2;                         ///< Lambda(+t), Lambda(-t)
-  static constexpr const char *name = "anisotropic", *meaning = "by slip on the side of the present plastic jump";
+  static constexpr const char *name = "anisotropic",
+                              *meaning = "wear by slip on the side of the present plastic jump (White 2014)";
   static std::vector<Parameter<AnisotropicDamage>> parameters() { return entries<AnisotropicDamage>(); }
   static std::vector<Quantity<AnisotropicDamage>> quantities() {
     auto all = told<AnisotropicDamage>();

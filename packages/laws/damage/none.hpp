@@ -14,7 +14,7 @@ struct Left {
 
 /// Joint without damage: both fractions are 1.
 struct NoDamage {
-  static constexpr const char *name = "none", *meaning = "friction and dilation do not wear";
+  static constexpr const char *name = "none", *meaning = "no wear of friction and dilation";
   static std::vector<Parameter<NoDamage>> parameters() { return {}; }
 
   template <class T>

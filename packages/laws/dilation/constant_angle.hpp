@@ -10,10 +10,10 @@ namespace sprekk::laws {
 struct ConstantDilation {
   Real tangent = 0;  ///< tan(theta)
 
-  static constexpr const char *name = "constant angle", *meaning = "in proportion to the slip (14)";
+  static constexpr const char *name = "constant angle", *meaning = "proportional to the slip (14)";
   static std::vector<Parameter<ConstantDilation>> parameters() {
     return {{&ConstantDilation::tangent, Entry{"dilation angle", "degree", base::at_least(0).below(90),
-                                               "theta: the gap grows by tan(theta)|u_t^p| (14)"}
+                                               "dilation angle theta: the gap grows by tan(theta)|u_t^p| (14)"}
                                              .or_else(0)
                                              .converted(tangent_of_degrees)
                                              .also_called({"psi", "dilatancy", "dilatancy angle"})}};

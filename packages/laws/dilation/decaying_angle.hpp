@@ -14,17 +14,20 @@ struct DecayingDilation {
   Real tangent = 0, residual = 0;  ///< tan(theta), tan(theta_r)
   Real distance = 1;               ///< D, m
 
-  static constexpr const char *name = "decaying angle", *meaning = "at an angle that falls exponentially with the slip";
+  static constexpr const char *name = "decaying angle",
+                              *meaning = "at an angle that decreases exponentially with the slip";
   static std::vector<Parameter<DecayingDilation>> parameters() {
     using Law = DecayingDilation;
     return {
-        {&Law::tangent, Entry{"dilation angle", "degree", base::at_least(0).below(90), "theta, without slip"}.converted(
-                            tangent_of_degrees)},
-        {&Law::residual, Entry{"residual dilation angle", "degree", base::at_least(0).below(90), "that slip leaves"}
+        {&Law::tangent,
+         Entry{"dilation angle", "degree", base::at_least(0).below(90), "dilation angle theta without slip"}.converted(
+             tangent_of_degrees)},
+        {&Law::residual, Entry{"residual dilation angle", "degree", base::at_least(0).below(90),
+                               "residual dilation angle at large slip"}
                              .or_else(0)
                              .converted(tangent_of_degrees)},
         {&Law::distance, Entry{"dilation decay distance", "m", base::positive(),
-                               "D: the slip by which the angle falls to 1/e of the way"}}};
+                               "slip distance D of the exponential decay of the dilation angle"}}};
   }
 
   template <class T>

@@ -13,14 +13,13 @@ struct LimitedDilation {
   Real tangent = 0;  ///< tan(theta)
   Real height = 1;   ///< h, m
 
-  static constexpr const char *name = "limited", *meaning = "in proportion to the slip, up to a largest opening";
+  static constexpr const char *name = "limited", *meaning = "proportional to the slip, up to a largest opening";
   static std::vector<Parameter<LimitedDilation>> parameters() {
     using Law = LimitedDilation;
-    return {{&Law::tangent,
-             Entry{"dilation angle", "degree", base::at_least(0).below(90), "theta, until h is reached"}.converted(
-                 tangent_of_degrees)},
-            {&Law::height,
-             Entry{"largest dilation", "m", base::positive(), "h: by which slip opens the joint, at the most"}}};
+    return {{&Law::tangent, Entry{"dilation angle", "degree", base::at_least(0).below(90),
+                                  "dilation angle theta below the largest dilation"}
+                                .converted(tangent_of_degrees)},
+            {&Law::height, Entry{"largest dilation", "m", base::positive(), "largest opening h by slip"}}};
   }
 
   template <class T>

@@ -19,13 +19,14 @@ struct MobilisedDilation {
   Real length = 0, sample = 0.1;       ///< joint and sample length as in friction, m
   Real peak_slip = 0;                  ///< delta_p, m
 
-  static constexpr const char *name = "mobilised", *meaning = "of a rough joint, by JRC and JCS, as slip mobilises it";
+  static constexpr const char *name = "mobilised", *meaning = "rough joint, by JRC and JCS, mobilised by slip";
   static std::vector<Parameter<MobilisedDilation>> parameters() {
     using Law = MobilisedDilation;
     return {{&Law::roughness, roughness_entry()},
             {&Law::wall_strength, wall_strength_entry()},
             {&Law::damage, Entry{"asperity damage coefficient", "-", base::positive(),
-                                 "M: the part 1/M of the roughness angle dilates; about 1 at low, 2 at high stress"}
+                                 "damage coefficient M: the fraction 1/M of the roughness angle causes dilation; "
+                                 "typical: 1 at low, 2 at high stress"}
                                .or_else(2)},
             {&Law::length, length_entry()},
             {&Law::sample, sample_entry()},

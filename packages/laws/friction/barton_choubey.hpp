@@ -19,16 +19,17 @@ struct BartonChoubeyFriction {
   Real length = 0;           ///< joint length, m; 0: JRC and JCS are values of the joint
   Real sample = 0.1;         ///< sample length of JRC and JCS if length > 0, m
 
-  static constexpr const char *name = "Barton-Choubey", *meaning = "peak strength of a rough joint, by JRC and JCS";
+  static constexpr const char *name = "Barton-Choubey",
+                              *meaning = "peak strength of a rough joint, by JRC and JCS (Barton and Choubey 1977)";
   static std::vector<Parameter<BartonChoubeyFriction>> parameters() {
     using Law = BartonChoubeyFriction;
     return {{&Law::roughness, roughness_entry()},
             {&Law::wall_strength, wall_strength_entry()},
-            {&Law::residual_angle,
-             Entry{"residual friction angle", "degree", base::at_least(0).below(90), "phi_r, of the smooth joint"}
-                 .also_called({"phi_r", "residual angle"})},
+            {&Law::residual_angle, Entry{"residual friction angle", "degree", base::at_least(0).below(90),
+                                         "residual friction angle phi_r of the smooth joint; typical: 25 to 35"}
+                                       .also_called({"phi_r", "residual angle"})},
             {&Law::steepest, Entry{"largest friction angle", "degree", base::greater_than(0).below(90),
-                                   "that the roughness leads to under small compression"}
+                                   "largest friction angle of the rough joint, at small compression"}
                                  .or_else(70)},
             {&Law::length, length_entry()},
             {&Law::sample, sample_entry()}};

@@ -22,21 +22,28 @@ struct ComposedFriction {
   Real transition = 1;                        ///< N_T, Pa
   Real exponent = 1.5;                        ///< K
 
-  static constexpr const char *name = "composed", *meaning = "of riding over asperities and of shearing through them";
+  static constexpr const char *name = "composed",
+                              *meaning =
+                                  "sliding over asperities and shearing through them (Ladanyi and Archambault 1970)";
   static std::vector<Parameter<ComposedFriction>> parameters() {
     using Law = ComposedFriction;
-    return {{&Law::basic,
-             Entry{"basic friction coefficient", "-", base::at_least(0), "mu_b of the smooth rock; or give the angle"}},
-            {&Law::basic, Entry{"basic friction angle", "degree", base::at_least(0).below(90), "atan(mu_b)"}.converted(
-                              tangent_of_degrees)},
+    return {{&Law::basic, Entry{"basic friction coefficient", "-", base::at_least(0),
+                                "basic friction coefficient mu_b of the smooth rock, in place of the angle"}},
+            {&Law::basic,
+             Entry{"basic friction angle", "degree", base::at_least(0).below(90),
+                   "basic friction angle atan(mu_b) of the smooth rock, in place of the coefficient; typical: 25 to 35"}
+                 .converted(tangent_of_degrees)},
             {&Law::asperity,
-             Entry{"asperity angle", "degree", base::at_least(0).below(90), "psi_0 by which asperities are inclined"}
+             Entry{"asperity angle", "degree", base::at_least(0).below(90), "inclination psi_0 of the asperities"}
                  .converted(tangent_of_degrees)},
             {&Law::sheared, Entry{"asperity friction coefficient", "-", base::at_least(0),
-                                  "mu_a that asperities add where they are sheared"}},
+                                  "additional friction coefficient mu_a of sheared asperities"}},
             {&Law::transition, Entry{"transition stress", "Pa", base::positive(),
-                                     "N_T, the compression from which on all asperities are sheared"}},
-            {&Law::exponent, Entry{"transition exponent", "-", base::greater_than(1), "K"}.or_else(1.5)}};
+                                     "transition stress N_T, the compression above which all asperities are sheared"}},
+            {&Law::exponent,
+             Entry{"transition exponent", "-", base::greater_than(1),
+                   "exponent K of the fraction of sheared asperities; 1.5 after Ladanyi and Archambault (1970)"}
+                 .or_else(1.5)}};
   }
   std::string defect() const {
     return basic * asperity >= 1 ? "basic friction times the tangent of the \"asperity angle\" must be below 1: faces "

@@ -16,7 +16,8 @@ struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
   Real peak_slip = 0;                  ///< delta_p, m
 
   static constexpr const char *name = "mobilised Barton-Choubey",
-                              *meaning = "of a rough joint, by JRC and JCS, that slip mobilises and wears";
+                              *meaning =
+                                  "strength of a rough joint, by JRC and JCS, mobilised and worn by slip (Barton 1982)";
   static std::vector<Parameter<MobilisedBartonChoubeyFriction>> parameters() {
     std::vector<Parameter<MobilisedBartonChoubeyFriction>> all;
     for (const auto& [number, entry] : BartonChoubeyFriction::parameters()) all.push_back({number, entry});

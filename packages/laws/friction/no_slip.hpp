@@ -12,7 +12,7 @@ struct NoSlip {
 
   static constexpr const char *name = "no slip",
                               *meaning =
-                                  "faces under compression never slip: a joint that is elastic alone, without a number";
+                                  "no slip of faces under compression, a purely elastic joint without further entries";
   static std::vector<Parameter<NoSlip>> parameters() { return {}; }
 
   template <class T>

@@ -15,20 +15,21 @@ struct SlipWeakeningFriction {
   Real peak = 0, residual = 0;         ///< mu_p, mu_r
   Real distance = 1;                   ///< D, m
 
-  static constexpr const char *name = "slip weakening",
-                              *meaning = "falls linearly with the slip, from peak to residual";
+  static constexpr const char *name = "slip weakening", *meaning = "linear decrease with slip, from peak to residual";
   static std::vector<Parameter<SlipWeakeningFriction>> parameters() {
     using Law = SlipWeakeningFriction;
-    return {{&Law::peak, Entry{"friction coefficient", "-", base::at_least(0), "mu at peak; or give the angle"}},
-            {&Law::peak, Entry{"friction angle", "degree", base::at_least(0).below(90), "atan(mu) at peak"}.converted(
-                             tangent_of_degrees)},
+    return {{&Law::peak, Entry{"friction coefficient", "-", base::at_least(0),
+                               "friction coefficient mu at peak, in place of the angle"}},
+            {&Law::peak, Entry{"friction angle", "degree", base::at_least(0).below(90),
+                               "friction angle atan(mu) at peak, in place of the coefficient"}
+                             .converted(tangent_of_degrees)},
             {&Law::residual, Entry{"residual friction coefficient", "-", base::at_least(0),
-                                   "mu_r that slip leaves; or give the angle"}},
-            {&Law::residual,
-             Entry{"residual friction angle", "degree", base::at_least(0).below(90), "atan(mu_r)"}.converted(
-                 tangent_of_degrees)},
+                                   "residual friction coefficient mu_r at large slip, in place of the angle"}},
+            {&Law::residual, Entry{"residual friction angle", "degree", base::at_least(0).below(90),
+                                   "residual friction angle atan(mu_r), in place of the coefficient"}
+                                 .converted(tangent_of_degrees)},
             {&Law::distance, Entry{"weakening distance", "m", base::positive(),
-                                   "D: the length of the path over which friction falls"}}};
+                                   "slip distance D over which friction falls to its residual value"}}};
   }
   static std::vector<Quantity<SlipWeakeningFriction>> quantities() {
     return {accumulated_slip<SlipWeakeningFriction>()};

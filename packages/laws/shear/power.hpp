@@ -15,15 +15,16 @@ struct PowerShear {
   Real reference = 1;  ///< N_r, Pa
   Real exponent = 0;   ///< m
 
-  static constexpr const char *name = "power", *meaning = "at a stiffness that grows with a power of the compression";
+  static constexpr const char *name = "power", *meaning = "with a stiffness that grows with a power of the compression";
   static std::vector<Parameter<PowerShear>> parameters() {
     using Law = PowerShear;
     return {
-        {&Law::stiffness,
-         Entry{"tangential stiffness", "Pa/m", base::positive(), "K_t of a joint that is not compressed"}},
+        {&Law::stiffness, Entry{"tangential stiffness", "Pa/m", base::positive(),
+                                "stiffness K_t of the elastic part of the tangential jump, without compression"}},
         {&Law::reference, Entry{"shear stiffening stress", "Pa", base::positive(),
-                                "N_r: K_t (1 + N/N_r)^m is the tangential stiffness"}},
-        {&Law::exponent, Entry{"shear stiffening exponent", "-", base::at_least(0), "m of the tangential stiffness"}}};
+                                "stress N_r in the tangential stiffness K_t (1 + N/N_r)^m under the compression N"}},
+        {&Law::exponent,
+         Entry{"shear stiffening exponent", "-", base::at_least(0), "exponent m of the tangential stiffness"}}};
   }
 
   template <class T>

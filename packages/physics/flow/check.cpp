@@ -157,9 +157,9 @@ std::string Flow::no_error_estimate(const Scene& scene) {
 }
 
 std::vector<QuantityKind> Flow::quantities() {
-  return {{"pressure", "Pa", "Pa", "of a well, or the mean over fractures"},
-          {"flow", "m^3/s", "m^2/s", "of fluid into the domain from a well or through a boundary"},
-          {"flux", "sqrt(W)", "sqrt(W/m)", "root of the power that the flow of fluid dissipates"}};
+  return {{"pressure", "Pa", "Pa", "pressure of a well, or mean over fractures"},
+          {"flow", "m^3/s", "m^2/s", "flow of fluid into the domain from a well or through a boundary"},
+          {"flux", "sqrt(W)", "sqrt(W/m)", "square root of the power dissipated by the flow of fluid"}};
 }
 
 std::string Flow::refuses(const Scene& scene, const Functional& J) {

@@ -10,16 +10,16 @@ namespace sprekk::physics {
 
 void Flow::Rock::describe(base::Section& s) {
   entry_of_place(s, permeability, "permeability", "m^2", base::any(),
-                 "k of the rock, needed with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, "
-                 "YZ, XZ in 3D");
-  entry_of_place(s, porosity, "porosity", "-", base::between(0, 1), "share of the volume that is fluid");
-  s.entry(
-      compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
-      "growth of the porosity with the fluid's pressure; of rock that deforms: at constant strain, (Biot coefficient "
-      "- porosity)/bulk modulus of the grains");
+                 "permeability k of the rock, required with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, "
+                 "XX, YY, ZZ, XY, YZ, XZ in 3D; typical: 1e-19 to 1e-16 (material library)");
+  entry_of_place(s, porosity, "porosity", "-", base::between(0, 1),
+                 "fraction of the volume filled with fluid; typical: 0.001 to 0.1 (material library)");
+  s.entry(compressibility, "compressibility of pores", "Pa^-1", base::at_least(0),
+          "increase of the porosity per fluid pressure; in deformable rock at constant strain, (Biot coefficient - "
+          "porosity)/bulk modulus of the grains; typical: 3e-12 to 1.5e-11 (material library)");
   s.entry(biot_modulus, "Biot modulus", "Pa", base::positive_or_infinite(),
-          "M, instead of the compressibility of pores: 1/M is that plus the porosity times the compressibility of "
-          "the fluid, the storage at constant strain");
+          "Biot modulus M, in place of the compressibility of pores: 1/M is the storage at constant strain, the "
+          "compressibility of pores plus the porosity times the compressibility of the fluid (Coussy 2004)");
 }
 
 void Flow::Rock::check(base::Section& s) const {
@@ -53,52 +53,57 @@ laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Re
 
 void Flow::Joint::describe(base::Section& s) {
   entry_of_place(s, residual_aperture, "residual aperture", "m", base::at_least(0),
-                 "the hydraulic aperture, with \"Flow\", is not less than this");
-  entry_of_place(
-      s, tangential_permeability, "tangential permeability", "m^2", base::positive(),
-      "k_t of the flow along the fracture, with \"Flow\"; without it the cubic law holds, (hydraulic aperture)^2/12");
+                 "minimum hydraulic aperture, with \"Flow\"");
+  entry_of_place(s, tangential_permeability, "tangential permeability", "m^2", base::positive(),
+                 "permeability k_t along the fracture, with \"Flow\"; absent: cubic law, (hydraulic aperture)^2/12");
   entry_of_place(s, normal_permeability, "normal permeability", "m^2", base::positive_or_infinite(),
-                 "k_n of the flow across, with \"Flow\"; infinite: the fluid in the fracture has the pressure of that "
-                 "beside it");
+                 "permeability k_n across the fracture, with \"Flow\"; infinite: equal pressures in the fracture and "
+                 "in the adjacent rock");
 }
 
 void FlowSection::describe(base::Section& s) {
-  s.entry(rigid_rock, "rigid rock", "-", "the rock does not deform: flow alone, without displacements");
-  s.entry(viscosity, "viscosity", "Pa*s", base::positive(), "mu of the fluid");
+  s.entry(rigid_rock, "rigid rock", "-", "switch for flow in rigid rock, without displacements");
+  s.entry(viscosity, "viscosity", "Pa*s", base::positive(),
+          "dynamic viscosity mu of the fluid; the default is the value of water at 20 degrees C");
   s.entry(density, "density", "kg/m^3", base::at_least(0),
-          "rho_0 of the fluid, at the reference pressure; its weight counts where \"Bulk\" has gravity");
-  s.entry(compressibility, "compressibility", "Pa^-1", base::at_least(0),
-          "c of the fluid: its density is rho_0 exp(c (p - reference pressure))");
+          "density rho_0 of the fluid at the reference pressure; with gravity in \"Bulk\" the fluid has weight");
+  s.entry(
+      compressibility, "compressibility", "Pa^-1", base::at_least(0),
+      "compressibility c of the fluid: its density is rho_0 exp(c (p - reference pressure)); about 4.5e-10 for water");
   s.entry(reference_pressure, "reference pressure", "Pa", base::any(),
-          "with a compressibility: where the density is as given; volumes of fluid are at this pressure");
+          "pressure of the given density, with a compressibility; volumes of fluid refer to this pressure");
   s.entry(source, "source", "s^-1", base::any(),
-          "volume of fluid per volume of rock and time, an expression of x, y, z, t");
+          "volume of injected fluid per volume of rock and time, a value or an expression of x, y, z, t");
   entry_of_place(s, initial_pressure, "initial pressure", "Pa", base::any(),
-                 "at the start, where fluid is stored; of x, y, z");
+                 "initial pressure of stored fluid, a value or an expression of x, y, z");
   s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
-           "how flows follow from pressures; auto: rt0 on simplices; on others tpfa where permeability and cells are "
-           "orthogonal, else mimetic");
-  s.named_sections(wells, "Wells", "by names of your choice");
+           "flux scheme; rt0: mixed elements (Raviart and Thomas 1977); tpfa: two-point flux approximation; mimetic: "
+           "mimetic differences; auto: rt0 on simplices, on other cells tpfa if permeability and cells are orthogonal, "
+           "else mimetic");
+  s.named_sections(wells, "Wells", "wells by names of your choice");
 }
 
 void WellSection::describe(base::Section& s) {
   s.required(points, "points", "m", base::any(),
-             "2D: x, y of a line of length 1 across the plane; 3D: of a polyline, x0, y0, z0, x1, y1, z1, ...");
-  s.required(radius, "radius", "m", base::positive(), "r_w of the hole");
+             "points of the well: in 2D x, y of a line of length 1 across the plane; in 3D a polyline x0, y0, z0, x1, "
+             "y1, z1, ...");
+  s.required(radius, "radius", "m", base::positive(), "radius r_w of the borehole; typical: 0.05 to 0.15");
   s.entry(skin, "skin", "-", base::any(),
-          "S: the pressure falls by S like flow by a further factor exp(S) of distance");
-  s.entry(rate, "rate", "m^3/s", base::any(),
-          "volume of fluid per time that is put in (2D: m^2/s), negative: taken out; an expression of t");
-  s.entry(pressure, "pressure", "Pa", base::any(), "in the well at its first point, an expression of t");
+          "skin factor S: an additional pressure drop, as by a further factor exp(S) of distance");
+  s.entry(
+      rate, "rate", "m^3/s", base::any(),
+      "injection rate, volume of fluid per time (2D: m^2/s), negative for extraction; a value or an expression of t");
+  s.entry(pressure, "pressure", "Pa", base::any(),
+          "pressure in the well at its first point, a value or an expression of t");
   if (s.complete() && rate.has_value() == pressure.has_value()) s.fail("give either \"rate\" or \"pressure\"");
 }
 
-void Flow::Sections::describe(base::Section& s) { s.section(flow, "Flow", "a fluid that flows through the rock"); }
+void Flow::Sections::describe(base::Section& s) { s.section(flow, "Flow", "single-phase flow in rock and fractures"); }
 
 void Flow::Region::describe(base::Section& s) {
-  s.entry(
-      pressure, "pressure", "Pa", base::any(),
-      "of the fluid in its cells and in fractures inside of it, with \"Flow\": a value or an expression of x, y, z, t");
+  s.entry(pressure, "pressure", "Pa", base::any(),
+          "prescribed fluid pressure in the cells of the region and in fractures inside, with \"Flow\": a value or an "
+          "expression of x, y, z, t");
 }
 
 std::vector<Prescribed> Flow::Region::prescribed() const {
@@ -107,26 +112,25 @@ std::vector<Prescribed> Flow::Region::prescribed() const {
 }
 
 void Flow::Fracture::describe(base::Section& s) {
-  s.entry(
-      source, "source", "m/s", base::any(),
-      "volume of fluid per area and time that is put into the fracture, with \"Flow\", an expression of x, y, z, t");
-  s.entry(
-      cuts, "cuts", "-",
-      "names of fractures that it divides where they meet: what flows from one part to the other crosses it, by its "
-      "normal permeability, with \"Flow\"");
+  s.entry(source, "source", "m/s", base::any(),
+          "volume of injected fluid per area of the fracture and time, with \"Flow\"; a value or an expression of x, "
+          "y, z, t");
+  s.entry(cuts, "cuts", "-",
+          "names of fractures that this fracture divides at their intersection, with \"Flow\": flow between the two "
+          "parts crosses this fracture with its normal permeability");
 }
 
 void Flow::BoundaryCondition::describe(base::Section& s) {
   s.entry(pressure, "pressure", "Pa", base::any(),
-          "of the fluid, with \"Flow\": a value or an expression of x, y, z, t; without a \"fracture\" and without a "
-          "conductance it holds for rock and fractures, all else for rock");
-  s.entry(flux, "flux", "m/s", base::any(), "volume of fluid that leaves per area and time, with \"Flow\"");
+          "prescribed fluid pressure, with \"Flow\": a value or an expression of x, y, z, t; without \"fracture\" and "
+          "\"conductance\" it applies to rock and fractures; other conditions without \"fracture\" apply to rock only");
+  s.entry(flux, "flux", "m/s", base::any(), "outflow of fluid, volume per area and time, with \"Flow\"");
   entry_of_place(s, conductance, "conductance", "m/(Pa*s)", base::at_least(0),
-                 "c: the flux is c (p - pressure), the pressure then being that beyond the boundary");
+                 "conductance c of the boundary: the flux is c (p - pressure), with the pressure beyond the boundary");
 }
 
 void Flow::Probe::describe(base::Section& s) {
-  s.entry(well, "well", "-", "name of a well: all that results.json has of it");
+  s.entry(well, "well", "-", "name of a well, for all its results in results.json");
 }
 
 std::vector<std::string> Flow::Probe::totals() const {

@@ -158,8 +158,8 @@ std::string Heat::no_error_estimate(const Scene& scene) {
 }
 
 std::vector<QuantityKind> Heat::quantities() {
-  return {{"temperature", "K", "K", "of what a well puts in or takes out, or the mean over fractures"},
-          {"heat flow", "W", "W/m", "into the domain from a well or through a boundary"}};
+  return {{"temperature", "K", "K", "temperature of the fluid of a well, or mean over fractures"},
+          {"heat flow", "W", "W/m", "heat flow into the domain from a well or through a boundary"}};
 }
 
 std::string Heat::refuses(const Scene& scene, const Functional& J) {

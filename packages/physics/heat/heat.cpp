@@ -167,36 +167,41 @@ void add_expansion(const Setting& setting, std::vector<GivenTemperature> given, 
 }  // namespace
 
 void WellTemperature::describe(base::Section& s) {
-  s.required(temperature, "temperature", "K", base::at_least(0), "of the fluid that it puts in, an expression of t");
+  s.required(temperature, "temperature", "K", base::at_least(0),
+             "temperature of the injected fluid, a value or an expression of t");
 }
 
 void HeatSection::describe(base::Section& s) {
-  s.entry(source, "source", "W/m^3", base::any(), "power per volume of rock, an expression of x, y, z, t");
-  entry_of_place(s, initial_temperature, "initial temperature", "K", base::any(),
-                 "at the start, where heat is stored; of x, y, z; thermal stress is zero there");
+  s.entry(source, "source", "W/m^3", base::any(), "power per volume of rock, a value or an expression of x, y, z, t");
+  entry_of_place(
+      s, initial_temperature, "initial temperature", "K", base::any(),
+      "initial temperature, required for heat storage, with zero thermal stress; a value or an expression of x, y, z");
   s.entry(fluid_capacity, "fluid heat capacity", "J/(m^3*K)", base::at_least(0),
-          "rho_0 c of the fluid of \"Flow\", at its reference pressure; needed with it");
+          "volumetric heat capacity rho_0 c of the fluid at its reference pressure, required with \"Flow\"; about "
+          "4.2e6 for water");
   s.entry(fluid_expansion, "fluid thermal expansion", "K^-1", base::at_least(0),
-          "volumetric, of the fluid: what becomes warmer needs more room, in pores and fractures");
-  s.choice(fluid, "fluid", {"constant", "exponential", "water"},
-           "how density and viscosity of the fluid of \"Flow\" change with the temperature T; exponential: rho = rho_0 "
-           "exp(c (p - p_0) - \"fluid thermal expansion\" (T - T_0)), mu = mu_0 exp(-\"viscosity decay\" (T - T_0)); "
-           "water: as "
-           "those of saturated liquid (IAPWS) to those at T_0, from 273.16 to 623.15 K");
+          "volumetric thermal expansion coefficient of the fluid in pores and fractures; about 2e-4 for water at 20 "
+          "degrees C");
+  s.choice(
+      fluid, "fluid", {"constant", "exponential", "water"},
+      "dependence of density and viscosity of the fluid of \"Flow\" on the temperature T; constant: none; exponential: "
+      "rho = rho_0 exp(c (p - p_0) - \"fluid thermal expansion\" (T - T_0)), mu = mu_0 exp(-\"viscosity decay\" (T - "
+      "T_0)); water: in the ratio of saturated liquid water (IAPWS) to the values at T_0, from 273.16 to 623.15 K");
   s.entry(viscosity_decay, "viscosity decay", "K^-1", base::at_least(0),
-          "of an exponential fluid, about 0.02 of water");
+          "decay coefficient of the viscosity of an exponential fluid; about 0.02 for water");
   s.entry(reference_temperature, "reference temperature", "K", base::at_least(0),
-          "T_0, where density and viscosity of \"Flow\" are as given there, unless the fluid is constant");
-  s.choice(
-      scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
-      "how flows follow from temperatures; auto: rt0 on simplices; on others tpfa where conductivity and cells are "
-      "orthogonal, else mimetic");
-  s.choice(
-      advection, "advection", {"upwind", "second order"},
-      "how the fluid carries heat between cells, and along fractures; second order: with limited corrections once per "
-      "step, of use for steps in which it does not cross more than about half a cell, with implicit Euler");
-  s.entry(of_friction, "heat of friction", "-", "what fractures dissipate as they slide warms them");
-  s.named_sections(wells, "Wells", "by names of wells of \"Flow\"; others put in fluid as warm as the place");
+          "temperature T_0 of the density and viscosity in \"Flow\", unless the fluid is constant");
+  s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
+           "flux scheme of conduction; rt0: mixed elements (Raviart and Thomas 1977); tpfa: two-point flux "
+           "approximation; mimetic: mimetic differences; auto: rt0 on simplices, on other cells tpfa if conductivity "
+           "and cells are orthogonal, else mimetic");
+  s.choice(advection, "advection", {"upwind", "second order"},
+           "advection scheme between cells and along fractures; upwind: first order; second order: limited corrections "
+           "once per step, with implicit Euler, for steps in which the fluid crosses at most about half a cell");
+  s.entry(of_friction, "heat of friction", "-", "heating of fractures by the power that their friction dissipates");
+  s.named_sections(
+      wells, "Wells",
+      "injection temperatures by the names of wells of \"Flow\"; other wells inject fluid at the local temperature");
 }
 
 std::optional<FluidChange> HeatSection::fluid_change() const {
@@ -209,25 +214,28 @@ std::optional<FluidChange> HeatSection::fluid_change() const {
 }
 
 void Heat::Sections::describe(base::Section& s) {
-  s.section(heat, "Heat", "heat that rock and fractures conduct and store and a fluid carries");
+  s.section(heat, "Heat", "heat conduction and storage in rock and fractures, and advection by the fluid");
 }
 
 void Heat::Rock::describe(base::Section& s) {
   entry_of_place(s, thermal_conductivity, "thermal conductivity", "W/(m*K)", base::any(),
-                 "of the rock, needed with \"Heat\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, XX, YY, ZZ, XY, YZ, "
-                 "XZ in 3D");
-  entry_of_place(
-      s, heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
-      "rho c, density times specific heat capacity, of the rock with what is in its pores; 0: no heat is stored");
+                 "thermal conductivity of the rock, required with \"Heat\": one value; XX, YY[, ZZ]; or XX, YY, XY in "
+                 "2D, XX, YY, ZZ, XY, YZ, XZ in 3D; typical: 1.7 to 3.1 (material library)");
+  entry_of_place(s, heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
+                 "volumetric heat capacity rho c of the rock with its pore fluid, density times specific heat "
+                 "capacity; 0: no heat storage; typical: 1.8e6 to 1.9e6 (material library)");
   entry_of_place(s, thermal_expansion, expansion_name, "K^-1", base::any(),
-                 "alpha_T, linear: the stress gets the part -3 K alpha_T (T - initial temperature)");
+                 "linear thermal expansion coefficient alpha_T: the thermal stress is -3 K alpha_T (T - initial "
+                 "temperature); typical: 5e-6 to 1e-5");
 }
 
 void Heat::Joint::describe(base::Section& s) {
   entry_of_place(s, filling_conductivity, conductivity_name, "W/(m*K)", base::positive(),
-                 "of what fills the fracture, along and across it, with \"Heat\"; that of water if not given");
-  entry_of_place(s, filling_heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
-                 "of what fills the fracture, with \"Heat\"; that of the fluid of \"Flow\" if not given");
+                 "thermal conductivity of the fracture filling, along and across the fracture, with \"Heat\"; the "
+                 "default is the value of water");
+  entry_of_place(
+      s, filling_heat_capacity, capacity_name, "J/(m^3*K)", base::at_least(0),
+      "volumetric heat capacity of the fracture filling, with \"Heat\"; absent: the value of the fluid of \"Flow\"");
 }
 
 bool Heat::Rock::conducts_uniformly() const { return is_uniform_tensor(thermal_conductivity); }
@@ -238,7 +246,7 @@ laws::Mobility Heat::Rock::conductivity(int dim, const std::array<Real, 3>& x) c
 
 void Heat::Region::describe(base::Section& s) {
   s.entry(temperature, "temperature", "K", base::at_least(0),
-          "of its cells, with \"Heat\": a value or an expression of x, y, z, t");
+          "prescribed temperature of the cells of the region, with \"Heat\": a value or an expression of x, y, z, t");
 }
 
 std::vector<Prescribed> Heat::Region::prescribed() const {
@@ -247,10 +255,12 @@ std::vector<Prescribed> Heat::Region::prescribed() const {
 }
 
 void Heat::BoundaryCondition::describe(base::Section& s) {
-  s.entry(temperature, "temperature", "K", base::at_least(0), "with \"Heat\": a value or an expression of x, y, z, t");
-  s.entry(heat_flux, "heat flux", "W/m^2", base::any(), "heat that leaves per area and time, with \"Heat\"");
-  entry_of_place(s, heat_transfer_coefficient, "heat transfer coefficient", "W/(m^2*K)", base::at_least(0),
-                 "h: the flux is h (T - temperature), the temperature then being that beyond the boundary");
+  s.entry(temperature, "temperature", "K", base::at_least(0),
+          "prescribed temperature, with \"Heat\": a value or an expression of x, y, z, t");
+  s.entry(heat_flux, "heat flux", "W/m^2", base::any(), "outflow of heat per area and time, with \"Heat\"");
+  entry_of_place(
+      s, heat_transfer_coefficient, "heat transfer coefficient", "W/(m^2*K)", base::at_least(0),
+      "heat transfer coefficient h: the flux is h (T - temperature), with the temperature beyond the boundary");
 }
 
 void Heat::BoundaryCondition::check(base::Section& s) const {

@@ -15,7 +15,7 @@ base::Bounds bounds_of_nu() { return base::greater_than(-1).below(0.5); }
 
 void describe_initial_stress(base::Section& s, std::vector<base::Expression>& stress, const std::string& whose) {
   entry_of_place(s, stress, "initial stress", "Pa", base::any(),
-                 "stress at zero displacement" + whose +
+                 "initial stress at zero displacement" + whose +
                      ", tension positive: XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D; values or expressions of "
                      "x, y, z");
 }
@@ -23,12 +23,18 @@ void describe_initial_stress(base::Section& s, std::vector<base::Expression>& st
 }  // namespace
 
 void Mechanics::Rock::describe(base::Section& s) {
-  entry_of_place(s, E, "Young's modulus", "Pa", base::positive(), "E; give exactly two elastic constants");
-  entry_of_place(s, nu, "Poisson's ratio", "-", bounds_of_nu(), "nu");
-  entry_of_place(s, G, "shear modulus", "Pa", base::positive(), "G");
-  entry_of_place(s, lambda, "Lame's first parameter", "Pa", base::any(), "lambda");
-  entry_of_place(s, K, "bulk modulus", "Pa", base::positive(), "K");
-  entry_of_place(s, density, density_name, "kg/m^3", base::at_least(0), "of the rock; needed with gravity");
+  entry_of_place(
+      s, E, "Young's modulus", "Pa", base::positive(),
+      "Young's modulus E; exactly two elastic constants are required; typical: 20e9 to 80e9 (material library)");
+  entry_of_place(s, nu, "Poisson's ratio", "-", bounds_of_nu(),
+                 "Poisson's ratio nu, an elastic constant; typical: 0.2 to 0.3 (material library)");
+  entry_of_place(s, G, "shear modulus", "Pa", base::positive(),
+                 "shear modulus G, an elastic constant; typical: 2e9 to 15e9 (material library)");
+  entry_of_place(s, lambda, "Lame's first parameter", "Pa", base::any(),
+                 "Lame's first parameter lambda, an elastic constant");
+  entry_of_place(s, K, "bulk modulus", "Pa", base::positive(), "bulk modulus K, an elastic constant");
+  entry_of_place(s, density, density_name, "kg/m^3", base::at_least(0),
+                 "density of the rock, required with gravity; typical: 2100 to 2950 (material library)");
   s.hint({"E", "young"}, "Did you mean \"Young's modulus\"?");
   s.hint({"nu", "poisson"}, "Did you mean \"Poisson's ratio\"?");
   s.hint({"G"}, "Did you mean \"shear modulus\"?");
@@ -66,15 +72,16 @@ Real Mechanics::Rock::density_at(const std::array<Real, 3>& x) const {
 void Mechanics::Joint::describe(base::Section& s) { JointMaterial::describe(s, s.documents() || !s.is_sound()); }
 
 void Mechanics::Bulk::describe(base::Section& s) {
-  s.entry(rigid, "rigid", "-", "the rock does not deform: no mechanics, and no displacements");
-  s.entry(body_force, "body force", "N/m^3", "force per volume, one value or expression of x, y, z, t per direction");
+  s.entry(rigid, "rigid", "-", "switch for rigid rock, without mechanics and displacements");
+  s.entry(body_force, "body force", "N/m^3",
+          "force per volume and direction, a value or an expression of x, y, z, t each");
   describe_initial_stress(s, initial_stress, "");
   s.section(lithostatic_stress, "lithostatic stress",
-            "initial stress of rock at rest under gravity along the last coordinate");
+            "initial stress of rock at rest under gravity, along the last coordinate");
   s.section(in_situ_stress, "in-situ stress",
-            "initial stress given by the vertical one and two horizontal ones, compression positive");
+            "initial stress by the vertical and two horizontal stresses, compression positive");
   s.entry(release, "release", "s", base::any(),
-          "two times, set by \"release\" of a stage: forces out of balance at the first are let go until the second");
+          "begin and end of the release of unbalanced forces, set by \"release\" of a stage");
 }
 
 void Mechanics::Bulk::check(base::Section& s) const {
@@ -85,53 +92,51 @@ void Mechanics::Bulk::check(base::Section& s) const {
 }
 
 void Lithostatic::describe(base::Section& s) {
-  s.required(surface, "surface", "m", "coordinate where the vertical stress is zero");
-  s.entry(horizontal_ratio, "horizontal ratio", "-", base::at_least(0), "horizontal over vertical stress");
+  s.required(surface, "surface", "m", "coordinate of the surface with zero vertical stress");
+  s.entry(horizontal_ratio, "horizontal ratio", "-", base::at_least(0), "ratio of horizontal to vertical stress");
 }
 
 void PrincipalStress::describe(base::Section& s) {
   const auto component = [&](Component& one, const std::string& name, const std::string& which) {
     s.entry(one.value, name, "Pa", base::any(), which + " at the datum, compression positive");
-    s.entry(one.gradient, name + " gradient", "Pa/m", base::any(), "its growth with depth, per metre");
+    s.entry(one.gradient, name + " gradient", "Pa/m", base::any(), "increase of the " + which + " per metre of depth");
   };
-  s.required(datum, "datum", "m", "vertical coordinate from which depth counts, z in 3D, y in 2D");
+  s.required(datum, "datum", "m", "vertical coordinate at zero depth, z in 3D and y in 2D");
   component(vertical, "Sv", "vertical stress");
   component(largest, "SHmax", "largest horizontal stress");
   component(smallest, "Shmin", "smallest horizontal stress");
-  s.entry(
-      azimuth, "azimuth", "degree", base::any(),
-      "direction of SHmax, clockwise from north: in 3D x is east and y north; in 2D, a section from west to east, 90 "
-      "(SHmax lies in it) or 0 (across it)");
+  s.entry(azimuth, "azimuth", "degree", base::any(),
+          "azimuth of SHmax, clockwise from north: in 3D x is east and y north; in a 2D section from west to east, 90 "
+          "(SHmax in the section) or 0 (across the section)");
 }
 
 void Mechanics::Region::describe(base::Section& s) {
-  describe_initial_stress(s, initial_stress, ", in place of that of \"Bulk\"");
+  describe_initial_stress(s, initial_stress, ", in place of the stress of \"Bulk\"");
 }
 
 void Mechanics::Fracture::describe(base::Section& s) {
-  s.entry(
-      fluid_pressure, "fluid pressure", "Pa", base::any(),
-      "p, a value or an expression of x, y, z, t: it pushes the sides apart; the traction on the rock is lambda - p n");
-  entry_of_place(
-      s, plastic_jump, "plastic jump", "m", base::any(),
-      "tangential plastic jump at the start, in the frame of the face: t in 2D, t1, t2 in 3D; values or expressions "
-      "of x, y, z");
+  s.entry(fluid_pressure, "fluid pressure", "Pa", base::any(),
+          "prescribed fluid pressure p in the fracture, a value or an expression of x, y, z, t; the traction on the "
+          "rock is lambda - p n");
+  entry_of_place(s, plastic_jump, "plastic jump", "m", base::any(),
+                 "initial tangential plastic jump in the frame of the face: t in 2D, t1, t2 in 3D; values or "
+                 "expressions of x, y, z");
 }
 
 void Mechanics::BoundaryCondition::describe(base::Section& s) {
   s.entry(displacement, "displacement", "m", base::any().or_word("free"),
-          "per direction a value, an expression of x, y, z, t, or free");
+          "prescribed displacement per direction: a value, an expression of x, y, z, t, or free");
   s.entry(lower_corner, "lower corner", "m",
-          "of a box: the \"displacement\" holds only at nodes of the boundary in it, e.g. at a point or along an edge");
-  s.entry(upper_corner, "upper corner", "m", "of the box; absent: the \"lower corner\", a point");
+          "lowest coordinates of a box, which restricts the \"displacement\" to nodes of the boundary inside, e.g. a "
+          "point or an edge");
+  s.entry(upper_corner, "upper corner", "m", "highest coordinates of the box; empty: the \"lower corner\", a point");
   s.entry(traction, "traction", "Pa",
           "force per area on the body, per direction a value or an expression of x, y, z, t");
-  s.entry(
-      confining_pressure, "confining pressure", "Pa", base::any(),
-      "force per area into the body along the normal of its faces, a value or an expression of x, y, z, t; is added "
-      "to a \"traction\"");
+  s.entry(confining_pressure, "confining pressure", "Pa", base::any(),
+          "pressure on the body along the normal of its faces, a value or an expression of x, y, z, t; adds to a "
+          "\"traction\"");
   s.entry(foundation_stiffness, "foundation stiffness", "Pa/m", base::at_least(0),
-          "of springs between the boundary and rigid ground, per direction: the traction -k_i u_i is added");
+          "stiffness k_i per direction of springs between the boundary and rigid ground, with the traction -k_i u_i");
 }
 
 void Mechanics::BoundaryCondition::check(base::Section& s) const {

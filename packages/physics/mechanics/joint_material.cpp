@@ -97,14 +97,18 @@ const std::vector<Role>& roles() {
   static const std::vector<Role> all = {
       {"tangential elasticity", "law of the elastic part of the tangential jump", &JointMaterial::tangential_elasticity,
        kinds(laws::ShearKinds())},
-      {"friction", "law of the bound on the shear traction", &JointMaterial::friction, kinds(laws::FrictionKinds())},
-      {"dilation", "law of the opening by slip", &JointMaterial::dilation, kinds(laws::DilationKinds())},
-      {"closure", "law of the closing under compression", &JointMaterial::closure, kinds(laws::ClosureKinds())},
-      {"bond", "law of the strength that faces have beside friction", &JointMaterial::bond, kinds(laws::BondKinds())},
-      {"damage", "law of the wear of friction and dilation", &JointMaterial::damage, kinds(laws::DamageKinds())},
-      {"damage driver", "what slip counts in damage", &JointMaterial::damage_driver, kinds(laws::DriverKinds())},
-      {"hydraulic aperture", "the aperture that a fluid flows in, with \"Flow\"", &JointMaterial::hydraulic_aperture,
-       kinds(laws::ApertureKinds())}};
+      {"friction", "friction law, the bound on the shear traction", &JointMaterial::friction,
+       kinds(laws::FrictionKinds())},
+      {"dilation", "dilation law, the opening by slip", &JointMaterial::dilation, kinds(laws::DilationKinds())},
+      {"closure", "closure law, the normal closure under compression", &JointMaterial::closure,
+       kinds(laws::ClosureKinds())},
+      {"bond", "bond law, the cohesion and tensile strength in addition to friction", &JointMaterial::bond,
+       kinds(laws::BondKinds())},
+      {"damage", "damage law, the wear of friction and dilation", &JointMaterial::damage, kinds(laws::DamageKinds())},
+      {"damage driver", "driver of damage, per unit of slip", &JointMaterial::damage_driver,
+       kinds(laws::DriverKinds())},
+      {"hydraulic aperture", "hydraulic aperture law, the aperture for flow in the fracture, with \"Flow\"",
+       &JointMaterial::hydraulic_aperture, kinds(laws::ApertureKinds())}};
   return all;
 }
 
@@ -185,7 +189,7 @@ void describe_entry(base::Section& s, const Role& role, const Entry& entry, std:
   const auto with = role.kinds_with(entry.name), needed = role.kinds_that_need(entry.name);
   std::string meaning = entry.meaning;
   if (const auto owners = owners_of(entry.name, true); of_all && !owners.empty())
-    meaning = fmt::format("{}: {}", owners, meaning);
+    meaning += fmt::format("; entry of {}", owners);
   if (of_all && needed != with && !needed.empty())
     meaning += fmt::format("; required with {} {}", role.name, base::quoted_list(needed));
   s.entry(value, entry.name, entry.unit, entry.bounds, meaning);
@@ -324,12 +328,14 @@ const std::optional<Value>& JointMaterial::entry(const std::string& name) const 
 void JointMaterial::describe(base::Section& s, bool of_all_kinds) {
   std::set<std::string> described;
   for (const auto& role : roles()) {
-    if (role.name == "closure") s.entry(initial_gap, "initial gap", "m", base::any(), "g0 of (14)");
+    if (role.name == "closure")
+      s.entry(initial_gap, "initial gap", "m", base::any(), "gap g0 of (14), without load and slip");
     describe_role(s, *this, role, of_all_kinds, described);
   }
-  s.entry(initial_aperture, "initial aperture", "m", base::at_least(0), "a0 of (15)");
+  s.entry(initial_aperture, "initial aperture", "m", base::at_least(0),
+          "aperture a0 of (15), without load and slip; typical: 1e-6 to 3e-4 (material library)");
   s.entry(strength_reduction, "strength reduction factor", "-", base::positive(),
-          "F: the joint bears 1/F of the shear and of the tension that it would by its friction and its bond");
+          "reduction factor F: friction and bond of the joint have 1/F of their strength");
   for (const auto& [name, value] : {std::pair("initial gap", &initial_gap), {"initial aperture", &initial_aperture}})
     if (!value->constant_in_time())
       s.fail(name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));

@@ -321,12 +321,12 @@ std::string Mechanics::no_error_estimate(const Scene& scene) {
 }
 
 std::vector<QuantityKind> Mechanics::quantities() {
-  return {{"slip", "m", "m", "the mean of the plastic slip over the area of fractures"},
-          {"opening", "m", "m", "the mean of the normal jump"},
-          {"normal force", "N", "N/m", "the integral of compression"},
-          {"shear force", "N", "N/m", "the integral of the size of shear traction"},
-          {"reaction", "N", "N/m", "the force that holds a boundary"},
-          {"stress", "sqrt(J)", "sqrt(J/m)", "root of the integral of s : C^-1 s, twice the elastic energy"}};
+  return {{"slip", "m", "m", "mean plastic slip over the area of fractures"},
+          {"opening", "m", "m", "mean normal jump over the area of fractures"},
+          {"normal force", "N", "N/m", "integral of compression over fractures"},
+          {"shear force", "N", "N/m", "integral of the magnitude of shear traction over fractures"},
+          {"reaction", "N", "N/m", "force on a boundary with prescribed displacements"},
+          {"stress", "sqrt(J)", "sqrt(J/m)", "square root of the integral of s : C^-1 s, twice the elastic energy"}};
 }
 
 std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
