@@ -172,9 +172,9 @@ std::string unheld(const GlobalMesh& mesh, const std::vector<DirichletCondition>
     centre = centre + (1.0 / n_corners) * mesh::point(mesh, mesh.cells[cell * mesh::n_nodes(mesh.shape) + k]);
   const auto others = std::count(moves.begin(), moves.end(), 1) - 1;
   return fmt::format(
-      "boundary conditions: nothing holds the rock of {} around {} ({} cells of {}){}: it {}. Contact holds a block "
-      "only against others that are held; prescribe the displacements that are missing, in at least one direction on "
-      "a boundary of it, or tie its sides by \"periodic\"",
+      "boundary conditions: nothing constrains the rock of {} around {} ({} cells of {}){}: it {}. Contact constrains "
+      "a block only against constrained blocks; prescribe the missing displacements, in at least one direction on a "
+      "boundary of the block, or connect its sides by \"periodic\"",
       base::quoted_list(regions), to_text(centre, mesh.dim(), mesh::norm(centre)), bodies.n_cells[body], mesh.n_cells(),
       others > 0 ? fmt::format(" and {} more bodies", others) : "", fmt::join(ways, "; it "));
 }

@@ -33,7 +33,8 @@ struct SectionSpecification {
 std::string to_markdown(const SectionSpecification& section, const std::string& path);
 
 /// Returns a RELAX NG schema (XML syntax) of files whose outermost list is any of `roots`. It contains names with
-/// their meanings, types, choices, and required entries of present sections. It does not check bounds and duplicate names.
+/// their meanings, types, choices, and required entries of present sections. It does not check bounds and duplicate
+/// names.
 std::string to_relax_ng(const std::vector<SectionSpecification>& roots);
 
 }  // namespace sprekk::base

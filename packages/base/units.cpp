@@ -231,7 +231,7 @@ Real shifted(Real value, int ten) {
     digits.resize(e);
   }
   const auto result = parse_number(fmt::format("{}e{}", digits, ten));
-  SPREKK_CHECK(result, "is {}e{}, which a double does not hold", digits, ten);
+  SPREKK_CHECK(result, "is {}e{}, outside of the range of a double", digits, ten);
   return *result;
 }
 
@@ -268,7 +268,7 @@ std::ostream& operator<<(std::ostream& out, const Quantity& quantity) { return o
 
 std::string units_like(const std::string& unit) {
   const auto names = offers(unit);
-  return names.empty() ? "" : fmt::format("; allowed are {} and what else measures the same", quoted_list(names));
+  return names.empty() ? "" : fmt::format("; allowed are {} and other units of the same quantity", quoted_list(names));
 }
 
 std::string defect_of_unit(const std::string& unit) {
@@ -304,7 +304,7 @@ Real value_in(const std::string& unit, const Quantity& quantity) {
   const Unit from = UnitParser(quantity.unit).parse();
   SPREKK_CHECK(unit != "-", "has the unit \"{}\", must be a number without a unit", quantity.unit);
   const Unit to = UnitParser(unit).parse();
-  SPREKK_CHECK(from.powers == to.powers, "has the unit \"{}\"; allowed are {} and what else measures the same{}",
+  SPREKK_CHECK(from.powers == to.powers, "has the unit \"{}\"; allowed are {} and other units of the same quantity{}",
                quantity.unit, quoted_list(offers(unit)),
                has_tonne(quantity.unit) ? fmt::format("; t is the tonne here: {}", no_units_in_expressions) : "");
   return shifted(quantity.value, from.ten - to.ten) * (from.factor / to.factor);

@@ -38,12 +38,12 @@ void parse(const std::string& text, int& value) {
   long long wide = 0;
   parse(text, wide);
   value = static_cast<int>(wide);
-  SPREKK_CHECK(value == wide, "is \"{}\", too large for an int; type=\"long long\" holds it", shortened(text));
+  SPREKK_CHECK(value == wide, "is \"{}\", too large for an int; use type=\"long long\"", shortened(text));
 }
 void parse(const std::string& text, Quantity& value) {
   const auto number = parse_number(text);
   const auto quantity = number ? Quantity{*number, ""} : parse_quantity(text);
-  SPREKK_CHECK(quantity, "is \"{}\", not a number that a double holds{}", shortened(text), hint_on_digits(text));
+  SPREKK_CHECK(quantity, "is \"{}\", not a number in the range of a double{}", shortened(text), hint_on_digits(text));
   const std::string defect = number ? "" : defect_of_unit(quantity->unit);
   SPREKK_CHECK(defect.empty(), "is \"{}\", not a number: {}", shortened(text), shortened(defect));
   value = *quantity;

@@ -177,7 +177,7 @@ Checkpoint Checkpoints::read(std::vector<std::string>& damage) {
       Seal journal;
       auto checkpoint = read(*number, journal);
       const auto text = read_journal(journal, damage);
-      for (const auto& what : damaged) damage.push_back(what + "; going on from the checkpoint before");
+      for (const auto& what : damaged) damage.push_back(what + "; the run continues from the checkpoint before");
       checkpoint.journal = entries_of(text);
       last_ = *number;
       journal_ = journal;
@@ -186,7 +186,7 @@ Checkpoint Checkpoints::read(std::vector<std::string>& damage) {
       damaged.push_back(error.what());
     }
   }
-  throw Error(fmt::format("{}: there is no complete checkpoint to go on from{}", path_,
+  throw Error(fmt::format("{}: there is no complete checkpoint to continue from{}", path_,
                           damaged.empty() ? "" : fmt::format("; {}", fmt::join(damaged, "; "))));
 }
 
@@ -200,7 +200,7 @@ std::string Checkpoints::read_journal(const Seal& seal, std::vector<std::string>
       reasons.push_back(error.what());
     }
   if (!text) throw Error(reasons.front());
-  for (const auto& reason : reasons) damage.push_back(reason + "; its other copy is whole, and taken");
+  for (const auto& reason : reasons) damage.push_back(reason + "; its intact copy is used");
   try {
     if (comm_->getRank() == 0)
       for (const auto& file : damaged) write_durably(file, *text);
@@ -219,7 +219,7 @@ Checkpoint Checkpoints::read(long long number, Seal& journal) const {
                "{}: is damaged", manifest_file);
   const int written = manifest["sealed"].value("format", 1);
   SPREKK_CHECK(written == format,
-               "{}: is of {} version of Sprekk (format {}, this one goes on from {}): start the run anew",
+               "{}: is of {} version of Sprekk (format {}, this one reads {}): run the scene again without --restart",
                folder(number), written < format ? "an earlier" : "a later", written, format);
   const auto& pieces = manifest["sealed"]["pieces"];
   std::map<std::string, NumberedValues> values;

@@ -41,7 +41,7 @@ void bring_to_disk(const std::string& path) {
   std::error_code none;
   const bool not_offered = file >= 0 && (error == EINVAL || error == ENOTSUP);  // on some network file systems
   SPREKK_CHECK(done || (not_offered && std::filesystem::is_directory(path, none)),
-               "{}: cannot be brought to the disk: {}", path, std::generic_category().message(error));
+               "{}: cannot be written to the disk: {}", path, std::generic_category().message(error));
 }
 
 void append_durably(const std::string& path, long long length, const std::string& content) {
@@ -74,8 +74,8 @@ void make_directory(const Comm& comm, const std::string& path) {
     std::error_code error;
     std::filesystem::create_directories(path, error);
     std::error_code unknown;
-    SPREKK_CHECK(std::filesystem::is_directory(path, unknown), "{}: cannot be made a directory: {}", path,
-                 error ? error.message() : "a file of that name is in the way");
+    SPREKK_CHECK(std::filesystem::is_directory(path, unknown), "{}: cannot be created as a directory: {}", path,
+                 error ? error.message() : "a file with this name exists");
   });
 }
 

@@ -126,11 +126,10 @@ class BoxBuilder {
                  fmt::join(box_.cells, ", "), blocks, dim_ == 2 ? "squares" : "cubes", most_blocks);
     const Real cells = blocks * static_cast<Real>(cells_of_block(shape_, false).size()),
                least = sizeof(GlobalIndex) * n_nodes(shape_) * cells + sizeof(Real) * dim_ * blocks;
-    SPREKK_CHECK(
-        least <= base::memory_limit(),
-        "box mesh: cells: {{{}}} makes {:.3g} cells, which alone take {:.3g} GB; there are {:.3g} GB: take fewer, "
-        "and \"refinements\", by which each rank makes its own part",
-        fmt::join(box_.cells, ", "), cells, least / 1e9, base::memory_limit() / 1e9);
+    SPREKK_CHECK(least <= base::memory_limit(),
+                 "box mesh: cells: {{{}}} makes {:.3g} cells, which alone take {:.3g} GB; there are {:.3g} GB: take "
+                 "fewer, and \"refinements\", which each rank makes for its own part",
+                 fmt::join(box_.cells, ", "), cells, least / 1e9, base::memory_limit() / 1e9);
   }
 
   Real block_size(int i) const { return (box_.upper_corner[i] - box_.lower_corner[i]) / n_blocks_[i]; }
@@ -263,8 +262,9 @@ class BoxBuilder {
                    name, fracture.upper_corner[i], fracture.lower_corner[i], "xyz"[i]);
       if (lower[i] == upper[i]) normal = i, ++n_normals;
     }
-    SPREKK_CHECK(n_normals == 1, "fracture \"{}\": its corners ({}) and ({}) agree in {} directions; they must in one",
-                 name, fmt::join(fracture.lower_corner, ", "), fmt::join(fracture.upper_corner, ", "), n_normals);
+    SPREKK_CHECK(n_normals == 1,
+                 "fracture \"{}\": its corners ({}) and ({}) agree in {} directions; they must agree in one", name,
+                 fmt::join(fracture.lower_corner, ", "), fmt::join(fracture.upper_corner, ", "), n_normals);
     SPREKK_CHECK(lower[normal] > 0 && lower[normal] < n_blocks_[normal],
                  "fracture \"{}\": has no interior face: {} = {} is the {} boundary", name, "xyz"[normal],
                  fracture.lower_corner[normal], boundary_names[2 * normal + (lower[normal] > 0)]);

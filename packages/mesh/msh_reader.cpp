@@ -337,7 +337,7 @@ class MshBuilder {
           fail("$Fractures: \"{}\" is in the sets \"{}\" and \"{}\"; fractures of two sets need two names", one.name,
                mesh_.fracture_names[one.set], name_of_set);
         if (one.properties != fracture->properties)
-          fail("$Fractures: \"{}\" is there twice with different entries; what has one name is one fracture", one.name);
+          fail("$Fractures: \"{}\" occurs twice with different entries; one name is one fracture", one.name);
         single_of_entity_[{fracture->group, fracture->entity}] = found->second;
       }
       whole_.push_back(of_set[name_of_set].empty() ? static_cast<int>(singles.size()) : -1);
@@ -426,7 +426,7 @@ class MshBuilder {
 
   void set_order() {
     const int have = order(mesh_.shape), wanted = options_.order.value_or(have);
-    if (wanted < have) fail("has cells of order {}; order {} was asked for", have, wanted);
+    if (wanted < have) fail("has cells of order {}; the scene requires order {}", have, wanted);
     if (wanted > have) mesh_ = raise_order(std::move(mesh_));
   }
 };

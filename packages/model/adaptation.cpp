@@ -133,7 +133,7 @@ std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const 
   if (accuracy.seconds && run.seconds + grows * took > *accuracy.seconds)
     return fmt::format("the next run would end after {:.3g} s (\"seconds\")", *accuracy.seconds);
   if (accuracy.memory && grows * bytes > *accuracy.memory)
-    return fmt::format("the next run would take more than {:.3g} bytes (\"memory\")", *accuracy.memory);
+    return fmt::format("the next run would need more than {:.3g} bytes (\"memory\")", *accuracy.memory);
   if (runs_.size() >= most_runs) return fmt::format("{} meshes were not enough", most_runs);
   return "";
 }
@@ -155,14 +155,13 @@ void Adaptation::judge(const Model& model, const Goals& goals) {
                          runs_.size() > 1 && space + time <= asked});
   }
   const bool too_long = std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& v) { return v.time > v.asked; });
-  why_ = reached() ? "reached"
-         : too_long
-             ? "steps that are halved once more fail, or change it by more than is asked for (of a number that is "
-               "all but zero give the \"absolute\" error)"
-             : limit(accuracy, *mesh.comm);
+  why_ = reached()  ? "reached"
+         : too_long ? "bisected steps fail, or change it by more than its tolerance (for a value near zero give the "
+                      "\"absolute\" error)"
+                    : limit(accuracy, *mesh.comm);
   if (!why_.empty()) return;
   cells_ = cells_to_halve(model, goals);
-  if (cells_.empty()) why_ = "no cell is to blame by the estimate";
+  if (cells_.empty()) why_ = "no cell has an estimated error";
 }
 
 std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const Goals& goals) const {

@@ -37,7 +37,7 @@ void check(const Model& model) {
     for (const auto& named_entry : sublist_of(stage.changes, "Materials")) {
       const auto& material = named_entry.first;
       SPREKK_CHECK(!sublist_of(stage.changes.sublist("Materials"), material).isParameter(reduction),
-                   "{}: Sprekk > Stages > {} > Materials > {} > \"{}\": is what is looked for; leave it out",
+                   "{}: Sprekk > Stages > {} > Materials > {} > \"{}\": is the result of the search; leave it out",
                    scene.origin, name, material, reduction);
     }
   SPREKK_CHECK(any && !model.mesh().fracture_names.empty(), "{}: has no joint whose strength could be reduced",
@@ -48,7 +48,7 @@ void check(const Model& model) {
       for (const auto& section : physics.sections_with_rates()) stores.push_back(section);
   });
   SPREKK_CHECK(!model.system().has_rates(),
-               "{}: its balances of rates store what flows, and so it has no equilibrium at a time: leave out {}",
+               "{}: its balances contain storage, and so it has no equilibrium at a fixed time: leave out {}",
                scene.origin, base::quoted_list(stores));
 }
 
@@ -71,7 +71,7 @@ void run_to_the_end(Model& model, Real factor) {
     if (!last.converged) break;
   }
   const auto strength = factor == 1 ? "its own strength" : fmt::format("its strength divided by {}", factor);
-  SPREKK_CHECK(stands(last), "{}: found no equilibrium with {}; one may be found from a smaller factor, --first {}: {}",
+  SPREKK_CHECK(stands(last), "{}: found no equilibrium with {}; a smaller factor, --first {}, may have one: {}",
                model.scene().origin, strength, factor / 2, reason_of(last));
 }
 

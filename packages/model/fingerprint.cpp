@@ -110,11 +110,11 @@ void check_fingerprint(const json& of_checkpoint, const json& of_scene) {
     const json before = of_checkpoint.value(what, json()), now = of_scene.value(what, json());
     if (what == "Tables" ? !same_tables(before, now) : before != now) different.push_back(what);
   }
-  SPREKK_CHECK(different.empty(),
-               "the checkpoint is of another scene, they differ in: {}; only the rest of Time, Solver, Output, Probes "
-               "and later Stages may change, and tables get more points at their end; what is to change at its time or "
-               "later makes a stage of it",
-               fmt::join(different, ", "));
+  SPREKK_CHECK(
+      different.empty(),
+      "the checkpoint is of another scene, they differ in: {}; only the rest of Time, Solver, Output, Probes and later "
+      "Stages may change, and tables get more points at their end; use a stage for changes at its time or later",
+      fmt::join(different, ", "));
 }
 
 }  // namespace sprekk::model

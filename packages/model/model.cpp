@@ -204,7 +204,7 @@ solve::StepReport Model::step_to(Real t) {
 }
 
 solve::StepReport Model::find_equilibrium() {
-  SPREKK_CHECK(!system_->has_rates(), "what the model stores takes time to change: take a step");
+  SPREKK_CHECK(!system_->has_rates(), "a change of stored quantities requires a time step: take a step");
   return advance(time_);
 }
 

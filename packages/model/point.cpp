@@ -100,7 +100,7 @@ void PointScene::describe(base::Section& s) {
     s.fail_inside(
         "Time: chooses steps by \"tolerance\" or \"target Newton iterations\", which needs a mesh; give \"steps\" or "
         "a \"schedule\"");
-  if (one && !specimens.empty()) s.fail_inside("Specimens: are there beside \"Point\"; leave one of them out");
+  if (one && !specimens.empty()) s.fail_inside("Specimens: given in addition to \"Point\"; leave one of them out");
   if (!one && specimens.empty())
     s.fail_inside("Point: missing, and so are \"Specimens\"; a scene of points needs either");
   if (one) point = *one;

@@ -196,8 +196,8 @@ class PointDriver {
       return laws::norm(tangential);
     };
     return fmt::format(
-        "slip jumps by {:.4g} m, the shear traction from {:.4g} to {:.4g} Pa: friction falls faster with slip than "
-        "what shears the joint unloads; both states obey the law, none between them does",
+        "slip jumps by {:.4g} m, the shear traction from {:.4g} to {:.4g} Pa: friction decreases faster with slip than "
+        "the loading system unloads; both states satisfy the law, states in between do not",
         jump.size, shear(jump.before), shear(jump.after));
   }
 
@@ -230,13 +230,14 @@ class PointDriver {
   /// Sets the initial traction and the corresponding jump. Throws an Error for tension, or for shear above the bound.
   void press() {
     auto at = laws::contact<dim>(point_.initial_traction[0], laws::norm(p_old_), p_old_, p_old_, {kept_.data()});
-    SPREKK_CHECK(at.lambda_n <= 0, "the initial traction is {} along the normal; it must press, or be 0", at.lambda_n);
+    SPREKK_CHECK(at.lambda_n <= 0, "the initial traction is {} along the normal; it must be compressive or 0",
+                 at.lambda_n);
     std::copy_n(point_.initial_traction.begin(), dim, base_);
     Real shear[dim - 1];
     std::copy_n(base_ + 1, dim - 1, shear);
     at.shear = laws::norm(shear);
-    SPREKK_CHECK(at.shear <= law_.bound(at), "the initial traction shears by {}; the joint bears {}", at.shear,
-                 law_.bound(at));
+    SPREKK_CHECK(at.shear <= law_.bound(at), "the initial shear traction is {}; the strength of the joint is {}",
+                 at.shear, law_.bound(at));
     rest_[0] = law_.normal_gap(at);
     for (int i = 1; i < dim; ++i) rest_[i] = p_old_[i - 1] + law_.compliance(at) * base_[i];
     std::copy_n(rest_, dim, x_);
@@ -368,7 +369,7 @@ class PointDriver {
   std::string undetermined(laws::ContactState state) const {
     const bool pulled = std::count(point_.control.begin() + 1, point_.control.end(), "traction") > 0;
     const bool pressed = control(0) == "traction" && d_[0] < 0;
-    if (state == laws::ContactState::open && !pressed) return "an open joint bears no traction, its jump has no bound";
+    if (state == laws::ContactState::open && !pressed) return "an open joint has no traction, its jump is unbounded";
     if (state == laws::ContactState::slip && pulled)
       return "the shear traction exceeds the friction bound, the joint slides without bound";
     if (control(0) == "jump" && law_.gap.closure.initial_compliance() == 0)

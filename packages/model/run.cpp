@@ -103,7 +103,8 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
       Scene scene = scene_of(options, *comm);
       has_scene = true;
       if (scene.accuracy) {
-        SPREKK_CHECK(!options.restart, "--restart: does not go with the section \"Accuracy\"; run the scene anew");
+        SPREKK_CHECK(!options.restart,
+                     "--restart: not available with the section \"Accuracy\"; run the scene without --restart");
         adaptation.prepare(scene, comm);
       }
       auto model = std::make_unique<Model>(scene, comm);
@@ -152,9 +153,9 @@ void tell_costs(const Model& model, base::Log& log) {
 void tell_loose(base::Log& log, Real t, const std::string& before, const std::string& now) {
   if (now == before) return;
   if (now.empty())
-    log.info("t = {:.6g}: all rock is held again", t);
+    log.info("t = {:.6g}: all rock is constrained again", t);
   else
-    log.warning("t = {:.6g}: {}, and nothing holds it; of all such states the one nearest to the last is taken", t,
+    log.warning("t = {:.6g}: {}, and nothing constrains it; of all such states the one nearest to the last is taken", t,
                 now);
 }
 
@@ -164,9 +165,9 @@ Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoint
   results.finish("interrupted");
   const bool none = results.n_steps() == 0;
   log.warning("interrupted {}; {}", none ? "in the first step" : fmt::format("after the step to t = {}", model.time()),
-              none                               ? "there is nothing to go on from"
-              : model.scene().output.checkpoints ? "--restart goes on from the last checkpoint"
-                                                 : "the scene asks for no checkpoints");
+              none                               ? "there is no checkpoint to continue from"
+              : model.scene().output.checkpoints ? "--restart continues from the last checkpoint"
+                                                 : "the scene has no section \"checkpoints\"");
   return Ending::interrupted;
 }
 
@@ -293,7 +294,7 @@ Ending run(const RunOptions& options, const std::string& directory, io::Director
     if (reserved)
       io::make_directory(*comm, directory);
     else if (const auto why = lock.take(); !why.empty())
-      log.warning("{}: its file system has no locks ({}): see to it that no other run writes there", directory, why);
+      log.warning("{}: its file system has no locks ({}): ensure that no other run writes there", directory, why);
     log.open(directory + "/log.txt", options.restart);
   };
   if (lock.has_directory()) reserve();
@@ -349,7 +350,8 @@ std::string mesh_info(const std::string& path, const std::vector<std::string>& f
 std::string reference() {
   auto point = base::specification<PointPath>("Point");
   point.meaning =
-      "path of a joint at one point, for `sprekk point` only; several points: sections with these entries in `Specimens`";
+      "path of a joint at one point, for `sprekk point` only; several points: sections with these entries in "
+      "`Specimens`";
   return "# All parameters\n\nPrinted by `./sprekk reference`. Numbers with a unit may be given in any unit "
          "of the same quantity.\n\n" +
          base::to_markdown(base::specification<Scene>("Sprekk"), "Sprekk") + base::to_markdown(point, "Sprekk > Point");

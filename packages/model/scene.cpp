@@ -51,8 +51,8 @@ void Time::describe(base::Section& s) {
 /// Checks the entries for adaptive steps and reports incompatible ones.
 void Time::describe_choice(base::Section& s) const {
   if (chooses_steps() && steps)
-    s.fail("steps", fmt::format("is {}: does not go with \"{}\", by which steps are chosen; leave out one of them",
-                                *steps, tolerance ? "tolerance" : "target Newton iterations"));
+    s.fail("steps", fmt::format("is {}: not allowed with \"{}\" for adaptive steps; leave out one of them", *steps,
+                                tolerance ? "tolerance" : "target Newton iterations"));
   const std::pair<const char*, const std::optional<Real>&> lengths[] = {
       {"first step", first_step}, {"smallest step", smallest_step}, {"largest step", largest_step}};
   for (const auto& [name, length] : lengths)

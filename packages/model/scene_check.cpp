@@ -57,7 +57,7 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
   physics::for_each_physics([&](auto physics) {
     const auto entry = physics.needs_implicit_euler(comparison.scene());
     if (!entry.empty() && scheme != "implicit Euler")
-      comparison.fail("Time > \"scheme\"", fmt::format("is \"{}\": {} goes with implicit Euler", scheme, entry));
+      comparison.fail("Time > \"scheme\"", fmt::format("is \"{}\": {} requires implicit Euler", scheme, entry));
   });
 }
 
@@ -97,8 +97,9 @@ void compare_accuracy(Comparison& comparison, const Scene& scene) {
       known.insert(known.end(), names.begin(), names.end());
       if (physics::has(names, quantity.what)) refused = physics.refuses(comparison.scene(), quantity);
     });
-    const auto why = refused.value_or(fmt::format("\"quantity\": is \"{}\", of which the scene has nothing; it has {}",
-                                                  quantity.what, base::quoted_list(known)));
+    const auto why =
+        refused.value_or(fmt::format("\"quantity\": is \"{}\", which the scene does not contain; it contains {}",
+                                     quantity.what, base::quoted_list(known)));
     const auto entry = why.find("\": ");  // the entry concerned
     if (is_there && !why.empty() && entry != std::string::npos)
       comparison.fail(place + " > " + why.substr(0, entry + 1), why.substr(entry + 3));

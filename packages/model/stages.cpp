@@ -69,7 +69,7 @@ void Stage::describe(base::Section& s) {
   for (const char* name : constant_sections)
     if (changes.isParameter(name)) s.fail_inside(fmt::format("{}: a stage cannot change it", name));
   if (changes.isSublist("Fractures") && changes.sublist("Fractures").isParameter("material"))
-    s.fail_inside("Fractures > \"material\": a stage changes that of fractures by their names");
+    s.fail_inside("Fractures > \"material\": a stage changes the materials of fractures by their names");
 }
 
 void check_stages(base::Section& s, const Stages& stages, Real start) {

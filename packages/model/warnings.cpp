@@ -46,7 +46,7 @@ std::vector<std::string> steps_across_knots(const Scene& scene) {
           physics::implausible(fmt::format("{}: Sprekk > Time", scene.origin),
                                fmt::format("{} step{} over knots of the table \"{}\", the first at t = {:.6g} s", n,
                                            n == 1 ? " goes" : "s go", of.name, knot),
-                               "loads count at the ends of steps alone, and slip depends on their path",
+                               "loads are evaluated only at the ends of steps, and slip depends on their path",
                                "take more \"steps\", a \"schedule\" with the knots in it, or a \"tolerance\""));
   }
   return all;
@@ -64,7 +64,7 @@ std::vector<std::string> stages_after_the_end(const Scene& scene) {
     else if (const Real released = stage.time + stage.release.value_or(0); released > end)
       all.push_back(physics::implausible(
           place + "\"release\"", fmt::format("lasts to {:.6g} s, and the last step ends at {:.6g} s", released, end),
-          "part of the forces is never let go", "let the run end later, or release in less time"));
+          "part of the forces is not released", "let the run end later, or release in less time"));
   }
   return all;
 }

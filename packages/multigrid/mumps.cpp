@@ -22,7 +22,7 @@ std::string message(const DMUMPS_STRUC_C& mumps) {
   switch (code) {
     case -5:
     case -13:
-      return fmt::format("MUMPS: out of memory (wanted {} more)", detail);
+      return fmt::format("MUMPS: out of memory ({} more required)", detail);
     case -6:
       return fmt::format("MUMPS: the matrix is structurally singular (rank {})", detail);
     case -8:

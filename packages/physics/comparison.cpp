@@ -61,7 +61,7 @@ void Comparison::compare_regions() {
 
 void Comparison::compare_fractures() {
   if (scene_.fractures.count("intersections"))
-    fail("Fractures > \"intersections\"", "is how files of results call what fractures meet in; choose another name");
+    fail("Fractures > \"intersections\"", "is the name of intersections in result files; choose another name");
   for (const auto& [name, fracture] : scene_.fractures)
     if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
       check_material("Fractures > " + name, fracture.material, "joint");
@@ -82,9 +82,9 @@ void Comparison::compare_boundary_conditions() {
     check_name(section, section + " > \"boundary\"", condition.boundary, names_.boundaries);
     if (has(tied_, condition.boundary))
       fail(section + " > \"boundary\"",
-           fmt::format("is \"{}\", which \"periodic\" ties to the opposite side; such a side is inside of the rock and "
-                       "takes no conditions",
-                       condition.boundary));
+           fmt::format(
+               "is \"{}\", which \"periodic\" connects to the opposite side; a periodic side allows no conditions",
+               condition.boundary));
     if (condition.region) check_name(section, section + " > \"region\"", *condition.region, names_.regions);
     if (condition.fracture) check_name(section, section + " > \"fracture\"", *condition.fracture, names_.fractures);
   }
@@ -94,7 +94,7 @@ void Comparison::compare_probes() {
   for (const auto& [name, probe] : scene_.probes) {
     const std::string section = "Probes > " + name;
     const bool plain = !name.empty() && name.find_first_of("/\\\"\n") == name.npos && name[0] != '.';
-    if (!plain) fail(section, "its name becomes that of a file; leave out slashes, quotation marks and a first dot");
+    if (!plain) fail(section, "its name becomes a file name; leave out slashes, quotation marks and a first dot");
     check_length(section + " > \"point\"", probe.point.size(), names_.dim);
     check_length(section + " > \"line\"", probe.line.size(),
                  names_.dim ? std::optional(2 * *names_.dim) : std::nullopt);
@@ -170,10 +170,10 @@ std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const 
   for (const auto& [name, one] : scene.boundary_conditions)
     if (one.region &&
         !touches[index_of(mesh.boundary_names, one.boundary) * n + index_of(mesh.region_names, *one.region)])
-      all.push_back(fmt::format(
-          "{}: Sprekk > Boundary conditions > {} > \"region\": \"{}\" does not touch the boundary \"{}\": the "
-          "condition holds nowhere",
-          scene.origin, name, *one.region, one.boundary));
+      all.push_back(
+          fmt::format("{}: Sprekk > Boundary conditions > {} > \"region\": \"{}\" does not touch the boundary \"{}\": "
+                      "the condition applies nowhere",
+                      scene.origin, name, *one.region, one.boundary));
   return all;
 }
 

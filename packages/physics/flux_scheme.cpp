@@ -61,8 +61,8 @@ std::string scheme_warning(const SchemeEntry& entry, const mesh::Mesh& mesh,
   const auto [skew, all] = entry.name == "tpfa" ? skew_cells(mesh, mobility) : std::array<GlobalIndex, 2>{};
   if (skew == 0) return "";
   return fmt::format(
-      "Sprekk > {} > \"scheme\": in {} of {} cells {} and faces are not orthogonal; there tpfa leaves out what flows "
-      "along faces, and its error does not fall with the size of cells: \"auto\" chooses a scheme that does",
+      "Sprekk > {} > \"scheme\": in {} of {} cells {} and faces are not orthogonal; there tpfa neglects the flux along "
+      "faces, and its error does not decrease with the size of cells: use \"auto\"",
       entry.section, skew, all, entry.property);
 }
 

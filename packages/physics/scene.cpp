@@ -229,7 +229,7 @@ std::vector<std::string> properties_passed_over(const Scene& scene, const mesh::
     for (const auto& property : single.properties) titles.insert(property.first);
   for (const auto& name : names_of_entries()) titles.erase(name);
   if (titles.empty()) return {};
-  return {fmt::format("{}: columns of fractures are passed over that are no entries of a joint: \"{}\"", scene.origin,
+  return {fmt::format("{}: ignored columns of fractures, which are no entries of a joint: \"{}\"", scene.origin,
                       fmt::join(titles, "\", \""))};
 }
 

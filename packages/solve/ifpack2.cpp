@@ -126,8 +126,8 @@ void check_ifpack2(const std::string& place, const std::string& method, const Pa
   for (const auto& item : given)
     if (!list.getEntry(item.first).isUsed() && std::find(known.begin(), known.end(), item.first) == known.end())
       throw RefusedList(
-          fmt::format("{} > \"{}\": {} does not read this parameter; see Ifpack2's manual for those that it has", place,
-                      item.first, method));
+          fmt::format("{} > \"{}\": {} does not read this parameter; see the manual of Ifpack2 for its parameters",
+                      place, item.first, method));
 }
 
 std::unique_ptr<Preconditioner> make_ifpack2(const ParameterList& given, const std::vector<Block>& blocks) {

@@ -177,7 +177,7 @@ class IterativeSolver : public LinearSolver {
     if (!report.reason.empty()) return report;
     report.converged = report.residual <= std::max(10 * tolerance, acceptable_linear_residual);
     if (!report.converged)
-      report.reason = fmt::format("iterative solve: relative residual {:.1e} after {} iterations, {:.0e} was asked for",
+      report.reason = fmt::format("iterative solve: relative residual {:.1e} after {} iterations, {:.0e} is required",
                                   report.residual, report.iterations, tolerance);
     return report;
   }

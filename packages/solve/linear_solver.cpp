@@ -25,9 +25,7 @@ void check_library_entries(base::Section& section, const Teuchos::ParameterList&
     const auto name = fmt::format("ICNTL({})", i);
     if (mumps.isParameter(name))
       section.fail_inside(
-          fmt::format("MUMPS > \"{}\": cannot be set: how matrix and solution are handed over is not "
-                      "for scenes to choose",
-                      name));
+          fmt::format("MUMPS > \"{}\": cannot be set: Sprekk controls the transfer of matrix and solution", name));
   }
   for (const auto& [name, least] : {std::pair("Maximum Iterations", 1), std::pair("Maximum Restarts", 0),
                                     std::pair("Num Blocks", 1), std::pair("Block Size", 1)}) {
@@ -57,8 +55,9 @@ void LinearSolverOptions::describe(base::Section& section) {
                 "true with checkpoints");
   section.passthrough(mumps, "MUMPS", "control parameters of MUMPS by the names ICNTL(i) and CNTL(i)");
   section.passthrough(belos, "Belos", "parameters of the library Belos; \"Solver Type\" selects another Krylov method");
-  section.hint({"MueLu"},
-               "It belongs to a block: Solver > Blocks > displacement > \"type\" MueLu, and \"MueLu\" beside it.");
+  section.hint(
+      {"MueLu"},
+      "It belongs to a block: Solver > Blocks > displacement > \"type\" MueLu, and \"MueLu\" in the same section.");
   check_library_entries(section, mumps, belos);
 }
 

@@ -49,10 +49,10 @@ class MeasureTest : public NOX::StatusTest::Generic {
       fail(fmt::format("'{}' is {}", worst->name, value));
     } else if ((picard_.lags() && picard_.n_steps() >= most_lagged) ||
                report_.iterations - picard_.n_steps() >= options_.max_iterations) {
-      fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
+      fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
     } else if (search_.stagnant) {
-      fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, wanted is {:.0e}", report_.iterations,
+      fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
     } else if (base::any_rank(*problem_.comm(), options_.should_stop)) {
       report_.stopped = true;
@@ -119,7 +119,7 @@ void check_methods(base::Section& section, const Teuchos::ParameterList& nox) {
       section.fail_inside(fmt::format("NOX > \"{}\": is {}, must be a section", name, base::describe(*entry)));
   if (nox.isSublist("Direction")) check(nox.sublist("Direction"), "NOX > Direction", "Method", "Newton");
   if (nox.isSublist("Line Search") && nox.sublist("Line Search").isParameter("Method"))
-    section.fail_inside("NOX > Line Search > \"Method\": must not be given: the search is Sprekk's own");
+    section.fail_inside("NOX > Line Search > \"Method\": must be absent: Sprekk has its own line search");
 }
 
 constexpr char nox_place[] = "Sprekk > Solver > NOX";
@@ -146,7 +146,7 @@ void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::Parameter
       continue;
     }
     SPREKK_CHECK(entry.isUsed(),
-                 "{} > \"{}\": NOX does not read this parameter here; see its manual for those that it has", path,
+                 "{} > \"{}\": NOX does not read this parameter here; see its manual for its parameters", path,
                  item.first);
   }
 }

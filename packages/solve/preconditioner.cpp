@@ -227,10 +227,10 @@ std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, con
   if (options.type == "MueLu") return make_muelu(options.muelu, blocks);
   if (options.type == "multigrid")
     fail(first.name, "type",
-         "multigrid is for blocks whose unknowns have places, and those that go with them; "
-         "MueLu, Ifpack2, Gauss-Seidel and direct are for any");
+         "multigrid requires blocks of unknowns with coordinates, and blocks in their groups; MueLu, Ifpack2, "
+         "Gauss-Seidel and direct do not");
   if (options.multigrid)
-    fail(first.name, "multigrid", "has no effect: unknowns of the block have no places, or it is in a group");
+    fail(first.name, "multigrid", "has no effect: the unknowns of the block have no coordinates, or it is in a group");
   return blocks.size() == 1 ? make_gauss_seidel(blocks) : make_direct(blocks);
 }
 
@@ -343,7 +343,7 @@ void check_names(const std::string& place, const ParameterList& given, const std
     if (names.count(item.first) > 0) continue;
     const auto all = known.size() > most_listed ? "" : "; there are " + base::quoted_list(known);
     auto meant = base::did_you_mean(item.first, known);
-    if (all.empty() && meant.empty()) meant = "; the library's manual lists those that there are";
+    if (all.empty() && meant.empty()) meant = "; see the manual of the library for its parameters";
     throw RefusedList(fmt::format("{} > \"{}\": no such parameter{}{}", place, item.first, all, meant));
   }
 }

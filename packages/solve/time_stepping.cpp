@@ -110,7 +110,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       problem_.commit(x);
       report.loose = problem_.globalisation().loose();
       if (settlings == most_settlings && !report.loose.empty())
-        report.loose += fmt::format(" (after {} attempts it may not be where it should come to lie)", settlings);
+        report.loose += fmt::format(" (after {} attempts its position may be inaccurate)", settlings);
       fields::copy(x, committed);
       done += size;
       relaxed = false;
@@ -129,10 +129,10 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     if (size == 1) {
       if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // time of x
       if (const auto where = problem_.globalisation().where(report.unsettled); !where.empty())
-        report.reason += "; faces that keep changing between open, stick and slip: " + where;
+        report.reason += "; faces that oscillate between open, stick and slip: " + where;
       if (!loose.empty())
         report.reason =
-            "no equilibrium found: in the last iterates " + loose + ", and nothing holds it; " + report.reason;
+            "no equilibrium found: in the last iterates " + loose + ", and nothing constrains it; " + report.reason;
       return report;
     }
     size /= 2;

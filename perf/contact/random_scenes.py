@@ -14,7 +14,7 @@ from scene_file import save
 
 ROOT = Path(__file__).resolve().parents[2]
 SIDES = ("west", "east", "south", "north", "bottom", "top")
-WORK = "slip would do work"  # part of the message that refuses a joint whose dilation exceeds friction
+WORK = "slip would produce energy"  # part of the message that refuses a joint whose dilation exceeds friction
 ATTEMPTS = 10  # draws of a network that cannot be meshed
 
 

@@ -131,7 +131,7 @@ TEST(TakeBack, MistakesAreErrors) {
   scene.host_fluid = physics::HostFluid();
   model::Model given(scene, comm);
   scene.fractures.begin()->second.fluid_pressure = 1;
-  EXPECT_THAT(error_of([&] { model::Model twice(scene, comm); }), HasSubstr("is not given but found"));
+  EXPECT_THAT(error_of([&] { model::Model twice(scene, comm); }), HasSubstr("is computed, not given"));
   scene.fractures.begin()->second.fluid_pressure = 0;
   EXPECT_THAT(error_of([&] { physics::set_fluid_pressure(given.system(), {}, {}); }),
               HasSubstr("pressures of 0 cells and 0 fracture faces are given, a rank has "));

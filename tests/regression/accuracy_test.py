@@ -128,9 +128,9 @@ class Accuracy(ProgramTest):
         self.refuse(['Accuracy: is of upwind flow; not available with "Heat > advection" second order'], DOUBLET, "Heat.advection=second order")
         self.refuse(['heat > "well": "injector" puts in fluid whose temperature is given'], DOUBLET, "Accuracy.quantities.heat.quantity=temperature",
                     "Accuracy.quantities.heat.well=injector", "Accuracy.quantities.heat.relative=0.01")
-        self.refuse(['goal > "quantity": is "slip", of which the scene has nothing'], NETWORK, *good)
+        self.refuse(['goal > "quantity": is "slip", which the scene does not contain'], NETWORK, *good)
         self.refuse(['goal: needs "boundary" or "well"'], NETWORK, *goal("flow", relative=0.01))
-        self.refuse(['goal > "boundary": is "north", where no pressure is prescribed, so that its flow is known'], NETWORK, *goal("flow", boundary="north", relative=0.01))
+        self.refuse(['goal > "boundary": is "north", where no pressure is prescribed; its flow is known'], NETWORK, *goal("flow", boundary="north", relative=0.01))
         self.refuse(['goal > "well": is "one", which is no section of Flow > Wells'], NETWORK, *goal("pressure", well="one", relative=0.01))
         self.refuse(['Accuracy: is of the scheme rt0; not available with "Flow > scheme" tpfa'], NETWORK, *goal("pressure", relative=0.01), "Flow.scheme=tpfa")
         through_rock = ["Flow.Wells.well.points={61, 71, 11, 61, 71, 21}", "Flow.Wells.well.radius=0.1 m", "Flow.Wells.well.rate=1e-6"]
@@ -142,7 +142,7 @@ class Accuracy(ProgramTest):
         self.assertIn(f'{NETWORK}: Sprekk > Flow > Wells > well > "points": in rock, must be on a fracture with "Accuracy"', said)
         _, said = self.call("run", self.scene(CRACK), "--restart", "--output", "out",
                             *(word for entry in good for word in ("--set", entry)), expect=1)
-        self.assertIn('--restart: does not go with the section "Accuracy"', said)
+        self.assertIn('--restart: not available with the section "Accuracy"', said)
 
 
 if __name__ == "__main__":

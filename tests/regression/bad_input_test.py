@@ -337,8 +337,8 @@ class Scenes(BadInput):
         refuse(['planar joint: residual friction must not be above the friction at peak'],
                *(f"Materials.planar joint.{entry}" for entry in ("friction=slip weakening", "residual friction coefficient=0.9",
                                                                  "weakening distance=1")))
-        refuse(["planar joint: slip would do work instead of dissipating it: after a slip of 0.01 m under 1 Pa friction bears 0.3196 Pa, "
-                "and dilation takes 0.364 Pa"],
+        refuse(["planar joint: slip would produce energy instead of dissipating it: after a slip of 0.01 m under 1 Pa the friction bound is 0.3196 Pa, "
+                "and dilation requires 0.364 Pa"],
                *(f"Materials.planar joint.{entry}" for entry in ("damage=isotropic", "damage length of friction=0.01",
                                                                  "residual part of friction=0.05", "dilation angle=20")))
         text = self.scene("verification/joint_kinds_2d.xml").read_text()
@@ -350,8 +350,8 @@ class Scenes(BadInput):
                     self.scene("verification/joint_kinds_2d.xml"), "--set", joint + "joint roughness coefficient=x-0.7", any_point=True)
 
     def test_steps_that_choose_themselves(self):
-        self.refuse_set(['Time > "steps": is 4: does not go with "tolerance"'], "Time.steps=4", "Time.tolerance=0.1")
-        self.refuse_set(['Time > "steps": is 4: does not go with "target Newton iterations"'], "Time.steps=4", "Time.target Newton iterations=5")
+        self.refuse_set(['Time > "steps": is 4: not allowed with "tolerance"'], "Time.steps=4", "Time.tolerance=0.1")
+        self.refuse_set(['Time > "steps": is 4: not allowed with "target Newton iterations"'], "Time.steps=4", "Time.target Newton iterations=5")
         self.refuse_set(['Time > "first step": is 1 s: needs "tolerance" or "target Newton iterations"'], "Time.first step=1")
         chosen = self.scene("poro/shut_in_2d.xml")
         for entry, words in (("tolerance=0", '"tolerance": is 0, must be between 1e-08 and 0.5'), ("tolerance=2", "must be between"),
@@ -391,7 +391,7 @@ class Scenes(BadInput):
         refuse(['"heat transfer coefficient" = y - 2 is -1.'], surface + "heat transfer coefficient=y - 2")
         refuse(['Materials > rock: "volumetric heat capacity" = 1-x is -', "must be at least 0"], "Materials.rock.volumetric heat capacity=1-x")
         refuse(['"volumetric heat capacity": is "t"; it may depend on x, y, z, not on t'], "Materials.rock.volumetric heat capacity=t")
-        refuse(["Heat: nothing says how high the temperature is"], surface + "heat transfer coefficient=0",
+        refuse(["Heat: the level of the temperature is not determined"], surface + "heat transfer coefficient=0",
                "Materials.rock.volumetric heat capacity=0 J/(m^3*K)")
         refuse(['"error estimate": is of triangles and tetrahedra where something flows; the mesh is of quadrilaterals'], "Output.error estimate=true")
         refuse(['Heat > "fluid": needs the section "Flow"', 'Heat > "advection": needs the section "Flow"'], "Heat.fluid=water",
@@ -410,16 +410,16 @@ class Scenes(BadInput):
         north = "Boundary conditions.north."
         refuse(['Heat > "fluid heat capacity": missing; it is required with "Flow"'], "Heat.initial temperature=350",
                "Materials.granite.thermal conductivity={2.8}", scene="poro/injection_2d.xml")
-        refuse(['Heat > "initial temperature": missing; it is required where what fills fractures has a heat capacity'],
+        refuse(['Heat > "initial temperature": missing; it is required where the filling of fractures has a heat capacity'],
                "Heat.fluid heat capacity=4e6", "Materials.granite.thermal conductivity={2.8}", north + "temperature=300", scene="poro/injection_2d.xml")
         refuse(['Heat > Wells > inyector: is "inyector", must be one of "injector", "producer"'], "Heat.Wells.inyector.temperature=300")
         refuse(['"fluid heat capacity": is -1, must be at least 0'], "Heat.fluid heat capacity=-1")
         refuse(['Heat > "fluid": is "steam", must be one of "constant", "exponential", "water"'], "Heat.fluid=steam")
-        refuse(['Heat > "fluid thermal expansion": is known of "fluid" = "water"'], "Heat.fluid=water")
-        refuse(['Heat > "viscosity decay": is of "fluid" = "exponential"; here that is "constant"'], "Heat.viscosity decay=0.02")
+        refuse(['Heat > "fluid thermal expansion": is part of "fluid" = "water"'], "Heat.fluid=water")
+        refuse(['Heat > "viscosity decay": requires "fluid" = "exponential"; here it is "constant"'], "Heat.viscosity decay=0.02")
         refuse(['Wells > injector > "temperature": is 200 K, must be between 273.16 and 623.15 K'], "Heat.fluid=water",
                "Heat.fluid thermal expansion=0", "Heat.Wells.injector.temperature=200")
-        refuse(['Time > "scheme": is "BDF2": Heat > "advection" = "second order" goes with implicit Euler'],
+        refuse(['Time > "scheme": is "BDF2": Heat > "advection" = "second order" requires implicit Euler'],
                "Heat.advection=second order", "Time.scheme=BDF2")
         refuse(['Heat > "heat of friction": needs fractures, and rock that deforms'], "Heat.heat of friction=true", "Flow.rigid rock=true")
         refuse(['Materials > rough joint > "thermal conductivity": is 0, must be positive'], "Materials.rough joint.thermal conductivity=0")
@@ -441,7 +441,7 @@ class Scenes(BadInput):
         refuse(['Materials > rock: give either "compressibility of pores" or "Biot modulus"'],
                "Materials.rock.compressibility of pores=0", "Materials.rock.Biot modulus=1")
         refuse(['Materials > rock > "Biot modulus": is 0, must be positive or infinite'], "Materials.rock.Biot modulus=0")
-        refuse(['Materials > rock: "Biot modulus": is 11 Pa, must not be above 10 Pa, which "porosity" and "compressibility"'],
+        refuse(['Materials > rock: "Biot modulus": is 11 Pa, must not be above 10 Pa, the value of "porosity" and "compressibility"'],
                "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2", "Flow.compressibility=0.5")
         refuse(['Materials > rock: "porosity" = 0.5-x is -0.', "must be between 0 and 1"], "Materials.rock.porosity=0.5-x")
         refuse(['Materials > rock: "Biot modulus": is 11 Pa, must not be above 10 Pa at ('], "Materials.rock.Biot modulus=11", "Materials.rock.porosity=0.2+0*x",
@@ -454,15 +454,15 @@ class Scenes(BadInput):
         for pattern, new in closed:
             text = re.sub(pattern, new, text, flags=re.DOTALL)
         (self.folder / "a.xml").write_text(text)
-        self.refuse(["Flow: nothing says how high the pressure is"], "check", "a.xml")
+        self.refuse(["Flow: the level of the pressure is not determined"], "check", "a.xml")
         self.refuse(['Materials > rock: "permeability" = {0.25-x} is not positive definite at x = (0.'], "check", self.scene("flow/source_2d.xml"),
                     "--set", "Materials.rock.permeability={0.25-x}", any_point=True)
         refuse(['rock > "permeability": is "1+t"; it may depend on x, y, z, not on t'], "Materials.rock.permeability={1+t}")
         refuse(['west > "conductance"', 'must be at least 0'], "Boundary conditions.west.conductance=-1")
         refuse(['west > "conductance": is "t"; it may depend on x, y, z, not on t'], "Boundary conditions.west.conductance=t")
-        refuse(['Bulk: has a force or stress of the rock'], "Bulk.body force={1, 0}")
+        refuse(['Bulk: prescribes a force or stress of the rock'], "Bulk.body force={1, 0}")
         (self.folder / "b.xml").write_text(self.scene(PUSH).read_text().replace('name="fracture"', 'name="intersections"'))
-        self.refuse(['Fractures > "intersections": is how files of results call'], "check", "b.xml")
+        self.refuse(['Fractures > "intersections": is the name of intersections'], "check", "b.xml")
         self.refuse_set(['moved > "pressure": needs the section "Flow"'], "Boundary conditions.moved.pressure=1")
         self.refuse_set(['Time > "scheme": is "BDF2": needs the section "Flow" or "Heat"'], "Time.scheme=BDF2")
         self.refuse(['"rt0" takes triangles and tetrahedra'], "run", self.scene("flow/source_2d.xml"), "--set", "Mesh.cell=quadrilateral", "--set", "Flow.scheme=rt0")
@@ -474,7 +474,7 @@ class Scenes(BadInput):
         refuse(['granite > "Biot coefficient": is 1.2, must be between 0 and 1'], "Materials.granite.Biot coefficient=1.2")
         refuse(['Materials > granite: "Biot coefficient" = 1.2-0*x is 1.2 at (', "must be between 0 and 1"],
                "Materials.granite.Biot coefficient=1.2-0*x")
-        refuse(['middle > "fluid pressure": is not given but found, with "Flow"'], "Fractures.middle.fluid pressure=1")
+        refuse(['middle > "fluid pressure": is computed, not given, with "Flow"'], "Fractures.middle.fluid pressure=1")
         refuse(['Output > "error estimate": is of triangles and tetrahedra where something flows'], "Output.error estimate=true", "Mesh.cell=quadrilateral")
         refuse(['middle > "cuts": needs "Flow > rigid rock"'], "Fractures.middle.cuts={east}")
         refuse(['Materials > rough joint: give either "friction coefficient" or "friction angle"'], "Materials.rough joint.friction angle=30")
@@ -490,7 +490,7 @@ class Scenes(BadInput):
             refuse([f'open joint > "{entry}": is 0, must be'], joint + entry + "=0")
         refuse(['west > "fracture": is "lon", must be one of', 'Did you mean "long"?'], west + "fracture=lon")
         refuse(['west: give either "fracture" or "region"'], west + "fracture=long", west + "region=bulk")
-        refuse(['Fractures > long > "fluid pressure": is not given but found'], "Fractures.long.fluid pressure=3e6")
+        refuse(['Fractures > long > "fluid pressure": is computed, not given'], "Fractures.long.fluid pressure=3e6")
         refuse(['west > "fracture": "long" does not end on "west"; it ends on "east"'], west + "fracture=long", command="run")
         refuse(['Boundary conditions > end: gives a conductance where "east" gives the pressure'], "Boundary conditions.end.boundary=east",
                "Boundary conditions.end.fracture=long", "Boundary conditions.end.pressure=1", "Boundary conditions.end.conductance=1")
@@ -501,7 +501,7 @@ class Scenes(BadInput):
         xml = self.scene_with(('      <Parameter name="friction coefficient" type="double" value="1"/>\n', ""))
         self.refuse(['Materials > joint: give either "friction coefficient" or "friction angle"'], "check", xml)
         self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
-        self.refuse_set(['"fracture": goes without "displacement", "traction", "confining pressure" and "foundation stiffness"'], "Boundary conditions.moved.fracture=fracture")
+        self.refuse_set(['"fracture": not available with "displacement", "traction", "confining pressure" and "foundation stiffness"'], "Boundary conditions.moved.fracture=fracture")
 
     def test_measured_loads(self):
         moved, stress = "Boundary conditions.moved.", "Bulk.in-situ stress."
@@ -509,8 +509,8 @@ class Scenes(BadInput):
         self.refuse_set(['moved > "lower corner": no node of boundary', "is in the box; the nearest to its middle is at (0, 1, 0)"],
                         moved + "lower corner={0.001, 1}")
         self.refuse_set(['moved > "lower corner": has 3 values, must have 2'], moved + "lower corner={0, 1, 0}")
-        self.refuse_set(['moved > "upper corner": goes with a "lower corner"'], moved + "upper corner={0, 1}")
-        self.refuse_set(['moved > "upper corner": [1] is 0.5, must be at least 1, that of "lower corner"'], moved + "lower corner={0, 1}",
+        self.refuse_set(['moved > "upper corner": requires a "lower corner"'], moved + "upper corner={0, 1}")
+        self.refuse_set(['moved > "upper corner": [1] is 0.5, must be at least 1, the value of "lower corner"'], moved + "lower corner={0, 1}",
                         moved + "upper corner={0, 0.5}")
         self.refuse_set(['in-situ stress > "datum" (m): missing; it is required'], stress + "Sv=1")
         self.refuse_set(['in-situ stress > "azimuth": is 30 degrees; in 2D SHmax lies in the section, 90 or 270, or across it, 0 or 180'], stress + "datum=0",
@@ -580,7 +580,7 @@ class Scenes(BadInput):
                                     ("Nonlinear Solver", "Foo", 'is the string "Foo", must be "Line Search Based"'),
                                     ("Direction.Method", "Steepest Descent", 'Direction > "Method": is the string "Steepest Descent", must be "Newton"'),
                                     ("Direction.Method", "3", 'is the integer 3, must be "Newton"'),
-                                    ("Line Search.Method", "More'-Thuente", 'Line Search > "Method": must not be given'),
+                                    ("Line Search.Method", "More'-Thuente", 'Line Search > "Method": must be absent'),
                                     ("Printing", "3", '"Printing": is the integer 3, must be a section')):
             self.refuse_set([place, words], f"Solver.NOX.{entry}={value}")
         for entry in ("Direction.Newton.Rescue Bad Newton Solve=3",):  # checked only by NOX
@@ -620,7 +620,7 @@ class Scenes(BadInput):
 
     def test_periodic_sides(self):
         self.refuse_set(['Mesh > "periodic": has "x" twice'], "Mesh.periodic={x, x}")
-        self.refuse_set(['moved > "boundary": is "north", which "periodic" ties'], "Mesh.periodic={x, y}")
+        self.refuse_set(['moved > "boundary": is "north", which "periodic" connects'], "Mesh.periodic={x, y}")
         self.refuse(['Mesh file > "periodic": has "west" twice'], "check", self.scene("gmsh/crossing.xml"),
                     "--set", "Mesh file.periodic={west, east, west, north}")
 
@@ -685,9 +685,9 @@ class AllAtOnce(BadInput):
                                    "Boundary conditions.fourth.boundary=east", "Boundary conditions.fourth.displacement={0, 0, 0}",
                                    "Bulk.gravity={0, -1}", "Regions.bulk.material=rock"))
         loose = ("Boundary conditions.fixed.displacement={free, 0}", "Boundary conditions.moved.displacement={free, -1}")
-        self.refuse_all([self.TYPO_TOLD, ["nothing holds the rock"]], scene, *self.sets(self.TYPO, *loose))
+        self.refuse_all([self.TYPO_TOLD, ["nothing constrains the rock"]], scene, *self.sets(self.TYPO, *loose))
         both = ("Boundary conditions.fourth.boundary=north", "Boundary conditions.fourth.displacement={free, 1}")
-        self.refuse_all([['"fourth" and "moved" prescribe', "component y"], ["nothing holds the rock"]], scene, *self.sets(*loose, *both))
+        self.refuse_all([['"fourth" and "moved" prescribe', "component y"], ["nothing constrains the rock"]], scene, *self.sets(*loose, *both))
         self.refuse_all([self.TYPO_TOLD, ['"displacement"[1]: "0/(t-1)"', "is nan"]], scene,
                         *self.sets(self.TYPO, "Boundary conditions.moved.displacement={0, 0/(t-1)}"))
 
@@ -726,7 +726,7 @@ class Outputs(BadInput):
     def test_directory(self):
         (self.folder / "file").write_text("")
         for path in ("file", "file/below", "/dev/null/below"):
-            self.refuse([f"{path}: cannot be made a directory: "], "run", self.scene(PUSH), "--output", path)
+            self.refuse([f"{path}: cannot be created as a directory: "], "run", self.scene(PUSH), "--output", path)
         for path in ("/proc/self/fd", "/proc/self/fd/below"):
             err = self.refuse([f"sprekk: {path}: cannot be "], "run", self.scene(PUSH), "--output", path)
             self.assertNotIn("filesystem error", err)
@@ -745,7 +745,7 @@ class Outputs(BadInput):
             done = subprocess.run([*prefix, "timeout", str(TIME_LIMIT), program.PROGRAM, "run", self.scene(PUSH), "--output", output],
                                   cwd=self.folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, **ALONE})
             self.assertEqual(done.returncode, 1)
-            self.assertEqual(done.stderr, f"sprekk: {output}: cannot be made a directory: Permission denied\n")
+            self.assertEqual(done.stderr, f"sprekk: {output}: cannot be created as a directory: Permission denied\n")
         closed.chmod(0o755)
 
     def test_full_disk_at_the_end(self):

@@ -142,7 +142,7 @@ class Errors(ProgramTest):
 
     def test_rock_that_nothing_holds(self):
         for command in ("run", "check"):
-            self.expect_error(self.scene(PUSH), [PUSH, "nothing holds the rock", '"bulk"', "can move along (1, 0)", "periodic"],
+            self.expect_error(self.scene(PUSH), [PUSH, "nothing constrains the rock", '"bulk"', "can move along (1, 0)", "periodic"],
                               "Boundary conditions.fixed.displacement={free, 0}", MOVED + "={free, -1}", command=command,
                               on_two=command == "run")
 

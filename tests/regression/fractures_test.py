@@ -113,7 +113,7 @@ class Fractures(ProgramTest):
         text = (ROOT / "xml/networks/mapped.csv").read_text().replace("initial aperture [mm]", "geologist's remark")
         (self.folder / "mapped.csv").write_text(text)
         _, err = self.call("check", scene, "--set", mesh_of(self.folder, scene))
-        self.assertIn('columns of fractures are passed over that are no entries of a joint: "geologist\'s remark"', err)
+        self.assertIn('ignored columns of fractures, which are no entries of a joint: "geologist\'s remark"', err)
 
     def test_biaxial_and_triaxial_test(self):
         """The joint slips at the load of Mohr and Coulomb, which then stays constant.

@@ -47,8 +47,8 @@ class Materials(ProgramTest):
         scene, joint = self.scene("point/shear_tests.xml"), "Materials.joint."
         sets = [word for entry in ("dilation=constant angle", "dilation angle=5") for word in ("--set", joint + entry)]
         err = self.call("point", scene, *sets, expect=1)[1]
-        for words in ("after a slip of 0 m under 1 Pa friction bears 0 Pa", "the angle of dilation, here 5 degrees, must not be above that of friction, "
-                      "here 0 degrees", 'friction "mobilised Barton-Choubey" is 0 where slip begins: with it goes dilation "mobilised"'):
+        for words in ("after a slip of 0 m under 1 Pa the friction bound is 0 Pa", "the dilation angle, here 5 degrees, must not exceed the friction angle, "
+                      "here 0 degrees", 'friction "mobilised Barton-Choubey" is 0 at the start of slip and requires dilation "mobilised"'):
             self.assertIn(words, err)
         self.call("point", scene, *sets, "--set", joint + "friction=Barton-Choubey")
         self.call("point", scene)

@@ -260,7 +260,7 @@ class Probes(ProgramTest):
                  (probe("p", boundary="up", outputs="{stress}"), '"boundary": is "up", must be one of'),
                  (probe("p", fracture="fault", outputs="{slip}"), '"fracture": is "fault", must be one of'),
                  (probe("p", well="deep"), 'Probes > p > "well": is "deep"'),
-                 (probe("a/b", point="{1, 1}", outputs="{stress}"), "Probes > a/b: its name becomes that of a file")]
+                 (probe("a/b", point="{1, 1}", outputs="{stress}"), "Probes > a/b: its name becomes a file name")]
         for sets, words in wrong:
             for ranks in (1, 2):
                 _, err = self.call("run", self.scene(PATCH), "--output", "out", *(word for one in sets for word in ("--set", one)),

@@ -186,7 +186,7 @@ class Restart(ProgramTest):
         words = run.stderr.read()
         self.assertEqual(run.wait(), 4, words)
         self.assertRegex(words, "sprekk: stopping; a second signal stops at once\n"
-                                "warning: interrupted after the step to t = .*; --restart goes on from the last checkpoint")
+                                "warning: interrupted after the step to t = .*; --restart continues from the last checkpoint")
         results = self.results()
         self.assertEqual(results["status"], "interrupted")
         self.assertIn(len(results["steps"]), range(1, n_steps))
@@ -228,7 +228,7 @@ class Restart(ProgramTest):
                     self.assertIn("interrupted after the step to t = 1;", words)
                     self.assertEqual(self.last(), before)
                 else:
-                    self.assertIn("interrupted in the first step; there is nothing to go on from", words)
+                    self.assertIn("interrupted in the first step; there is no checkpoint to continue from", words)
                     self.assertEqual(self.results()["steps"], [])
 
     def test_interrupted_in_a_linear_solve(self):
@@ -245,7 +245,7 @@ class Restart(ProgramTest):
                 run.send_signal(signal.SIGTERM if ranks == 1 else signal.SIGUSR1)
                 words = run.stderr.read()
                 self.assertEqual(run.wait(timeout=20), 4, words)
-                self.assertIn("interrupted in the first step; there is nothing to go on from", words)
+                self.assertIn("interrupted in the first step; there is no checkpoint to continue from", words)
                 self.assertEqual(self.results()["status"], "interrupted")
                 shutil.rmtree(self.folder / "out")
 
@@ -386,7 +386,7 @@ class Restart(ProgramTest):
             damage(self.checkpoints()[-1])
             words = self.go(*scene, restart=True)
             self.assertRegex(words, "warning: out/checkpoints/([0-9]+/[a-z0-9_.]+|journal): (is damaged|cannot be read); "
-                                    "going on from the checkpoint before")
+                                    "the run continues from the checkpoint before")
             self.expect_same_bits("whole", "out")
             shutil.rmtree(self.folder / "out")
 
@@ -417,7 +417,7 @@ class Restart(ProgramTest):
                 path = self.folder / "out/checkpoints" / name
                 damage(path, path.read_bytes())
                 words = self.go(*scene, restart=True)
-                self.assertRegex(words, f"(?m)^warning: out/checkpoints/{name}: (is damaged|cannot be read); its other copy is whole, and taken\n$")
+                self.assertRegex(words, f"(?m)^warning: out/checkpoints/{name}: (is damaged|cannot be read); its intact copy is used\n$")
                 self.expect_same_bits("whole", "out")
                 for copy in ("journal", "journal_copy"):
                     self.assertEqual((self.folder / "out/checkpoints" / copy).read_bytes(), (self.folder / "whole/checkpoints/journal").read_bytes())
@@ -432,7 +432,7 @@ class Restart(ProgramTest):
         piece.write_bytes(content)
         results = self.results()
         words = self.go(CYCLIC, restart=True, expect=1)
-        self.assertRegex(words, "there is no complete checkpoint to go on from; .*piece_0.h5: is damaged")
+        self.assertRegex(words, "there is no complete checkpoint to continue from; .*piece_0.h5: is damaged")
         self.assertEqual(self.results(), results)
 
     def test_no_checkpoint_of_another_run(self):

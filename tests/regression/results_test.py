@@ -227,11 +227,11 @@ class Results(ProgramTest):
             core = ["Mesh.regions.core.lower corner={0.25, 0.25}", "Mesh.regions.core.upper corner={0.75, 0.75}"]
             told = warnings(*core, "Boundary conditions.west.region=core", ranks=ranks)
             self.assertEqual(len(told), 1, told)
-            self.assertIn('west > "region": "core" does not touch the boundary "west": the condition holds nowhere', told[0])
+            self.assertIn('west > "region": "core" does not touch the boundary "west": the condition applies nowhere', told[0])
             self.assertEqual(warnings(*core, "Boundary conditions.west.region=bulk", ranks=ranks), [])
             told = warnings("Boundary conditions.west.pressure=-5", ranks=ranks)
             self.assertEqual(len(told), 1, told)
-            self.assertRegex(told[0], "^warning: t = 0.333333: .*source_2d.xml: the fluid's pressure is below 0 in places")
+            self.assertRegex(told[0], "^warning: t = 0.333333: .*source_2d.xml: the pressure of the fluid is below 0 in places")
 
     def test_rock_that_nothing_holds_is_told_once(self):
         # the frame contracts, releases the block in it (ax, ay < 0), and grips it again
@@ -243,7 +243,7 @@ class Results(ProgramTest):
             lines = [line for line in err.splitlines() if "over knots" not in line]  # the first step passes some knots
             self.assertEqual(len(lines), 1, err)
             self.assertIn("t = 3.75: " + words, lines[0])
-            self.assertEqual(re.findall("^.*held again", out, re.MULTILINE), ["t = 5: all rock is held again"])
+            self.assertEqual(re.findall("^.*constrained again", out, re.MULTILINE), ["t = 5: all rock is constrained again"])
             loose = {step["time"]: step["loose"] for step in self.results()["steps"] if "loose" in step}
             self.assertEqual(list(loose), [3.75, 3.9, 4])
             for text in loose.values():

@@ -44,7 +44,7 @@ TEST(SceneCheck, ModulesOfAHostMayHoldTheRock) {
   const auto alone = error_of(scene),
              with_modules =
                  error_of(scene, [](const mesh::Mesh&) { return std::vector<std::unique_ptr<assembly::Module>>(); });
-  EXPECT_TRUE(has(alone, "nothing holds the rock")) << alone;
+  EXPECT_TRUE(has(alone, "nothing constrains the rock")) << alone;
   EXPECT_EQ(alone, with_modules);
   scene.bulk.material = "rok";
   EXPECT_EQ(n_lines(error_of(scene)), 2);

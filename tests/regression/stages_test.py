@@ -246,7 +246,7 @@ class Stages(ProgramTest):
         self.assertEqual([step.get("stage") for step in whole["steps"]], [None, None, "a", "a", "b"])
         error = go(*first, "Materials.joint.tangential stiffness=3", expect=1)
         self.assertIn("they differ in: Materials", error)
-        self.assertIn("what is to change at its time or later makes a stage of it", error)
+        self.assertIn("use a stage for changes at its time or later", error)
         error = go(*first[:-1], "Stages.a.Materials.joint.friction coefficient=0.55", expect=1)
         self.assertIn("they differ in: Materials", error)
 
@@ -264,7 +264,7 @@ class Stages(ProgramTest):
                 (["Stages.s.time=2", "Stages.s.without={Boundary conditions > mooved}"],
                  'stage "s": "without": names "Boundary conditions > mooved", which the scene does not have at this time. Did you mean "moved"?'),
                 (["Stages.s.time=2", "Stages.s.Fractures.material=other"],
-                 'Sprekk > Stages > s > Fractures > "material": a stage changes that of fractures by their names'),
+                 'Sprekk > Stages > s > Fractures > "material": a stage changes the materials of fractures by their names'),
                 (["Stages.s.time=2", "Stages.s.Materials.rock.shear modulus=2"],
                  'stage "s": the rock of "bulk" gets other elastic constants, and the fracture "fracture" meets it; that can only happen'),
                 (["Stages.s.time=2", "Stages.s.backfill={bulk}"],
@@ -278,7 +278,7 @@ class Stages(ProgramTest):
                 (["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",
                   "Materials.joint.residual part of friction=0.5", "Stages.s.time=2", "Stages.s.Materials.plain.type=joint",
                   "Stages.s.Materials.plain.friction coefficient=0.6", "Stages.s.Fractures.fracture.material=plain"],
-                 "its laws that remember become")):
+                 "its laws with history variables become")):
             with self.subTest(options=options):
                 sets = [word for option in options for word in ("--set", option)]
                 error = self.call("run", self.scene(CYCLIC), "--output", "out", *sets, expect=1)[1]

@@ -37,11 +37,10 @@ struct BandisClosure : BartonBandisClosure {
                                  : -0.1032 - 0.0074 * roughness + 1.1350 * std::pow(strength, -0.2510));
   }
   std::string defect() const {
-    if (cycle != 1 && cycle != 3) return "\"loading cycle\" must be 1 or 3: there are no numbers for others";
+    if (cycle != 1 && cycle != 3) return "\"loading cycle\" must be 1 or 3: other cycles have no measured values";
     if (stiffness > 0 && maximum > 0) return "";
-    return "\"joint roughness coefficient\", \"joint wall strength\" and \"joint aperture\" are outside of what "
-           "closure "
-           "was measured for: stiffness or maximum closure would be negative";
+    return "\"joint roughness coefficient\", \"joint wall strength\" and \"joint aperture\" are outside of the "
+           "measured range of the closure law: stiffness or maximum closure would be negative";
   }
 };
 

@@ -46,8 +46,8 @@ struct ComposedFriction {
                  .or_else(1.5)}};
   }
   std::string defect() const {
-    return basic * asperity >= 1 ? "basic friction times the tangent of the \"asperity angle\" must be below 1: faces "
-                                   "would lock, whatever the shear traction"
+    return basic * asperity >= 1 ? "basic friction times the tangent of the \"asperity angle\" must be below 1: "
+                                   "otherwise the faces lock at any shear traction"
                                  : "";
   }
 

@@ -38,7 +38,7 @@ void compare_fractures(Comparison& c) {
     const auto* joint = c.joint_of(fracture);
     if (!joint || !c.is_sound("Flow")) continue;
     if (has_fluid(scene) && !is_zero(fracture.fluid_pressure))
-      c.fail("Fractures > " + name + " > \"fluid pressure\"", "is not given but found, with \"Flow\"");
+      c.fail("Fractures > " + name + " > \"fluid pressure\"", "is computed, not given, with \"Flow\"");
     if (scene.flow && is_zero(joint->initial_aperture) && is_zero(joint->residual_aperture))
       c.fail("Materials > " + fracture.material + " > \"initial aperture\"",
              "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
@@ -89,8 +89,8 @@ void compare_level(Comparison& c) {
       c.is_sound("Boundary conditions") && (!scene.boundary_conditions.empty() || c.is_absent("Boundary conditions"));
   if (!given && !stored && known && c.is_sound("Materials") && c.is_sound("Flow"))
     c.fail("Flow",
-           "nothing says how high the pressure is: give a \"pressure\" on a boundary, in a well or in a region, or "
-           "storage (\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
+           "the level of the pressure is not determined: give a \"pressure\" on a boundary, in a well or in a region, "
+           "or storage (\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
            "\"compressibility\" of the fluid)");
 }
 
@@ -178,26 +178,25 @@ std::string Flow::refuses(const Scene& scene, const Functional& J) {
   if (std::any_of(wells.begin(), wells.end(), [](const auto& well) { return well.second.points.size() > 2; }))
     return "is not available with wells through rock; in 2D wells may be on fractures";
   if (J.what == "flux" && !wells.empty())
-    return "is not available with wells, whose power is not told from their radius";
+    return "is not available with wells, whose power does not follow from their radius";
   if (of_well) {
     const auto found = wells.find(J.well);
     if (found == wells.end()) return fmt::format("\"well\": is \"{}\", which is no section of Flow > Wells", J.well);
     if (J.what == "flow" && !found->second.pressure)
-      return fmt::format("\"well\": the rate of \"{}\" is given; ask for its pressure", J.well);
+      return fmt::format("\"well\": the rate of \"{}\" is given; request its pressure", J.well);
     if (J.what == "pressure" && found->second.pressure)
-      return fmt::format("\"well\": the pressure of \"{}\" is given; ask for its flow", J.well);
+      return fmt::format("\"well\": the pressure of \"{}\" is given; request its flow", J.well);
   }
   const auto& conditions = scene.boundary_conditions;
   if (J.what == "flow" && !of_well && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
         return one.second.boundary == J.boundary && one.second.pressure;
       }))
-    return fmt::format("\"boundary\": is \"{}\", where no pressure is prescribed, so that its flow is known",
-                       J.boundary);
+    return fmt::format("\"boundary\": is \"{}\", where no pressure is prescribed; its flow is known", J.boundary);
   return "";
 }
 
 void Flow::compare(Comparison& c) {
-  if (c.scene().flow && c.scene().host_fluid) c.fail("Flow", "goes without a host_fluid, which brings its own flow");
+  if (c.scene().flow && c.scene().host_fluid) c.fail("Flow", "not available with a host_fluid, which has its own flow");
   compare_without_flow(c);
   compare_fractures(c);
   compare_probes(c);

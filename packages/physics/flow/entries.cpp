@@ -33,8 +33,8 @@ Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const
   if (!biot_modulus) return {.room = room, .growth = compressibility.value_or(0)};
   const auto here = porosity.is_constant() ? "" : fmt::format(" at ({}, {}, {})", x[0], x[1], x[2]);
   SPREKK_CHECK(least <= (1 + 1e-12) / *biot_modulus,
-               "\"Biot modulus\": is {:.6g} Pa, must not be above {:.6g} Pa{}, which \"porosity\" and "
-               "\"compressibility\" of the fluid make without any growth of pores",
+               "\"Biot modulus\": is {:.6g} Pa, must not be above {:.6g} Pa{}, the value of \"porosity\" and "
+               "\"compressibility\" of the fluid without compressibility of pores",
                *biot_modulus, 1 / least, here);
   return {.room = room, .growth = std::max(Real(0), 1 / *biot_modulus - least)};
 }

@@ -386,9 +386,8 @@ std::vector<std::string> Flow::warnings_of_state(const Setting& setting, const s
   const auto all = base::max_over_ranks(*mesh.comm, here);
   if (all[0] <= 1e-9 * all[1]) return {};
   return {
-      fmt::format("{}: the fluid's pressure is below 0 in places: as an absolute pressure no fluid has that, and no "
-                  "liquid stays one "
-                  "where it nears 0; as one relative to another pressure it is as good as any",
+      fmt::format("{}: the pressure of the fluid is below 0 in places; if it is an absolute pressure, a real fluid "
+                  "boils or cavitates there; if it is relative to another pressure, ignore this warning",
                   scene.origin)};
 }
 

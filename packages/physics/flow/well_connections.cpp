@@ -140,8 +140,8 @@ class Finder {
       if (!(c.index > 0 && std::isfinite(c.index)))
         failure = fmt::format(
             "Sprekk > Flow > Wells > {} > \"radius\": is {}, too large for the cell at ({:.6g}, {:.6g}, {:.6g}): the "
-            "distance at which the pressure is that of the cell, times exp(skin), must be larger; it is so of coarser "
-            "cells, and of ones that are less long along the well",
+            "equivalent radius of the cell times exp(skin) must be larger; use coarser cells, or cells that are "
+            "shorter along the well",
             well(c).name, well(c).radius, c.x[0], c.x[1], c.x[2]);
     return failure;
   }

@@ -91,11 +91,10 @@ class Wells final : public assembly::Module {
       start_ = {before.data(), before.data() + before.extent(0)};
       sums_ = sums([&](LocalIndex face) { return start_[face]; });
       for (std::size_t w = 0; w < sums_.size(); ++w)
-        SPREKK_CHECK(
-            sums_[w] > 0,
-            "Sprekk > Flow > Wells > {}: the fractures that it is in are closed at t = {}, so that nothing flows "
-            "into them; give a \"residual aperture\"",
-            parameters_.wells[w].name, state.t);
+        SPREKK_CHECK(sums_[w] > 0,
+                     "Sprekk > Flow > Wells > {}: its fractures are closed at t = {}, without flow into them; give a "
+                     "\"residual aperture\"",
+                     parameters_.wells[w].name, state.t);
     }
     std::array<std::vector<Real>, 2> outside;
     for (int k = 0; k < 2; ++k) {

@@ -48,8 +48,8 @@ void compare_level(Comparison& c) {
   c.for_each_rock([&](const Material& rock) { known = known || !is_zero(rock.heat_capacity); });
   if (known || !c.names().regions || !c.is_sound("Materials") || !c.is_sound("Boundary conditions")) return;
   c.fail("Heat",
-         "nothing says how high the temperature is: give a \"temperature\" on a boundary or in a region, or "
-         "rock a \"volumetric heat capacity\"");
+         "the level of the temperature is not determined: give a \"temperature\" on a boundary or in a region, or rock "
+         "a \"volumetric heat capacity\"");
 }
 
 /// Returns whether the filling of a fracture stores heat.
@@ -78,7 +78,7 @@ void compare_start(Comparison& c) {
     else if (!is_zero(rock.thermal_expansion))
       require("rock has a \"thermal expansion\"");
   });
-  if (stores_in_fractures(c)) require("what fills fractures has a heat capacity");
+  if (stores_in_fractures(c)) require("the filling of fractures has a heat capacity");
   if (scene.flow && scene.heat->fluid_expansion > 0) require("a fluid has a \"fluid thermal expansion\"");
   if (scene.flow && scene.heat->fluid != "constant") require("a fluid changes with the temperature");
 }
@@ -89,9 +89,9 @@ void compare_change(Comparison& c) {
   const auto of = [&](const std::string& entry, const std::string& what) { c.fail("Heat > \"" + entry + "\"", what); };
   if (heat.fluid != "constant" && !c.scene().flow) of("fluid", "needs the section \"Flow\"");
   if (heat.fluid != "exponential" && heat.viscosity_decay > 0)
-    of("viscosity decay", "is of \"fluid\" = \"exponential\"; here that is \"" + heat.fluid + "\"");
+    of("viscosity decay", "requires \"fluid\" = \"exponential\"; here it is \"" + heat.fluid + "\"");
   if (heat.fluid != "water") return;
-  if (heat.fluid_expansion > 0) of("fluid thermal expansion", "is known of \"fluid\" = \"water\": leave it out");
+  if (heat.fluid_expansion > 0) of("fluid thermal expansion", "is part of \"fluid\" = \"water\": leave it out");
   const auto see = [&](const std::string& place, const base::Expression& T) {
     if (T.is_constant() && !is_water(T({}, 0)))
       c.fail(place, fmt::format("is {} K, must be between {} and {} K, where \"fluid\" = \"water\" is tabulated",
@@ -103,7 +103,7 @@ void compare_change(Comparison& c) {
 
 void compare_fluid(Comparison& c) {
   const auto& heat = *c.scene().heat;
-  if (c.scene().host_fluid) c.fail("Heat", "goes without a host_fluid, whose flow is not known");
+  if (c.scene().host_fluid) c.fail("Heat", "not available with a host_fluid, whose flow is not known");
   if (!c.is_sound("Heat") || !c.is_sound("Flow")) return;
   if (c.scene().flow && !heat.fluid_capacity)
     c.fail("Heat > \"fluid heat capacity\"", "missing; it is required with \"Flow\"");
@@ -183,7 +183,7 @@ std::string Heat::refuses(const Scene& scene, const Functional& J) {
   if (is_flow && !of_well && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
         return one.second.boundary == J.boundary && one.second.temperature;
       }))
-    return fmt::format("\"boundary\": is \"{}\", where no temperature is given, so that its heat flow is known",
+    return fmt::format("\"boundary\": is \"{}\", where no temperature is prescribed; its heat flow is known",
                        J.boundary);
   return "";
 }

@@ -463,8 +463,8 @@ std::vector<std::string> Heat::warnings_of_state(const Setting& setting, const s
   if (const auto warning = overshoot_warning(setting, times, given, outputs); !warning.empty()) all.push_back(warning);
   if (scene.heat->fluid == "water" && leaves_water(mesh, outputs))
     all.push_back(
-        fmt::format("{}: Sprekk > Heat > \"fluid\": temperatures leave the range of water, {} to {} K, beyond which "
-                    "its density and viscosity stay those of the end",
+        fmt::format("{}: Sprekk > Heat > \"fluid\": temperatures leave the range of water, {} to {} K; beyond this "
+                    "range density and viscosity are constant",
                     scene.origin, coldest_water, warmest_water));
   return all;
 }

@@ -119,14 +119,14 @@ std::vector<std::string> Mechanics::refuses_change(const Scene& before, const Sc
                old_laws = laws_with_memory(before.materials.at(old->second.material));
     if (!old_laws.empty() && laws != old_laws)
       lines.push_back(
-          fmt::format("Fractures > {}: its laws that remember become \"{}\", they were \"{}\", and what "
-                      "these have kept means nothing to others",
+          fmt::format("Fractures > {}: its laws with history variables become \"{}\", they were \"{}\"; other laws "
+                      "cannot use these history variables",
                       name, fmt::join(laws, "\", \""), fmt::join(old_laws, "\", \"")));
   }
   if (!after.bulk.lithostatic_stress) return lines;
   const auto density = [](const Scene& scene) { return scene.material_of("bulk").density.value_or(0).text(); };
   if (before.bulk.gravity != after.bulk.gravity || density(before) != density(after))
-    lines.push_back("Bulk > \"lithostatic stress\": is that of gravity and density, which a change keeps with it");
+    lines.push_back("Bulk > \"lithostatic stress\": follows from gravity and density and cannot be changed alone");
   return lines;
 }
 

@@ -30,7 +30,8 @@ void compare_rock(Comparison& c) {
   for (const auto& [name, region] : c.scene().regions) check_stress(c, "Regions > " + name, region.initial_stress);
   if (!Mechanics::is_in(c.scene())) {
     if (!bulk.body_force.empty() || bulk.lithostatic_stress || bulk.in_situ_stress)
-      c.fail("Bulk", "has a force or stress of the rock, which " + rigid_entry(c.scene()) + " says does not deform");
+      c.fail("Bulk",
+             "prescribes a force or stress of the rock, which " + rigid_entry(c.scene()) + " says does not deform");
     return;
   }
   c.for_each_rock([&](const Material& rock) {
@@ -70,7 +71,7 @@ void compare_conditions(Comparison& c) {
     const bool given = condition.Mechanics::BoundaryCondition::is_given();
     if (given && condition.fracture)
       c.fail(section + " > \"fracture\"",
-             "goes without \"displacement\", \"traction\", \"confining pressure\" and \"foundation stiffness\"");
+             "not available with \"displacement\", \"traction\", \"confining pressure\" and \"foundation stiffness\"");
     if (given && !Mechanics::is_in(c.scene()))
       c.fail(section, "moves or loads the rock, which " + rigid_entry(c.scene()) + " says does not deform");
   }

@@ -140,12 +140,12 @@ void Mechanics::BoundaryCondition::describe(base::Section& s) {
 }
 
 void Mechanics::BoundaryCondition::check(base::Section& s) const {
-  if (lower_corner.empty() && !upper_corner.empty()) s.fail("upper corner", "goes with a \"lower corner\"");
+  if (lower_corner.empty() && !upper_corner.empty()) s.fail("upper corner", "requires a \"lower corner\"");
   for (std::size_t i = 0; i < std::min(lower_corner.size(), upper_corner.size()); ++i)
     if (upper_corner[i] < lower_corner[i])
-      s.fail("upper corner", fmt::format("[{}] is {}, must be at least {}, that of \"lower corner\"", i,
+      s.fail("upper corner", fmt::format("[{}] is {}, must be at least {}, the value of \"lower corner\"", i,
                                          upper_corner[i], lower_corner[i]));
-  if (displacement.empty() && !lower_corner.empty()) s.fail("lower corner", "goes with a \"displacement\"");
+  if (displacement.empty() && !lower_corner.empty()) s.fail("lower corner", "requires a \"displacement\"");
   if (!displacement.empty() && (is_loaded() || !foundation_stiffness.empty()))
     s.fail(fmt::format("give either \"displacement\" or \"{}\"", !traction.empty()    ? "traction"
                                                                  : confining_pressure ? "confining pressure"

@@ -298,10 +298,9 @@ std::string gain_by_slip(const laws::Joint& law) {
       const Real bound = law.friction_bound(at);
       if (bound < (1 - 1e-9) * opens * compression)
         return fmt::format(
-            "slip would do work instead of dissipating it: after a slip of {:.3g} m under {:.3g} Pa friction bears "
-            "{:.4g} Pa, and dilation takes {:.4g} Pa; whatever the slip, the angle of dilation, here {:.4g} degrees, "
-            "must "
-            "not be above that of friction, here {:.4g} degrees",
+            "slip would produce energy instead of dissipating it: after a slip of {:.3g} m under {:.3g} Pa the "
+            "friction bound is {:.4g} Pa, and dilation requires {:.4g} Pa; at any slip the dilation angle, here {:.4g} "
+            "degrees, must not exceed the friction angle, here {:.4g} degrees",
             slip, compression, bound, opens * compression, degrees(opens), degrees(bound / compression));
     }
   return "";
@@ -372,7 +371,8 @@ std::vector<std::array<std::string, 2>> JointMaterial::missing(const std::string
       if (names.size() > 1)
         all.push_back({"", give_one_of(names) + or_without_entries(role)});
       else
-        all.push_back({names[0], fmt::format("missing; it is required with {} \"{}\"", role.name, this->*role.chosen)});
+        all.push_back({names[0], fmt::format("missing; it is required with {} \"{}\": {}", role.name,
+                                             this->*role.chosen, entry_of(*role.kind_of(*this), names[0])->meaning)});
     });
   return all;
 }
@@ -381,7 +381,7 @@ std::vector<std::array<std::string, 2>> JointMaterial::only_in_2d() const {
   std::vector<std::array<std::string, 2>> all;
   for (const auto& role : roles())
     if (const auto* chosen = role.kind_of(*this); chosen && chosen->flat)
-      all.push_back({role.name, fmt::format("is \"{}\", which there is in 2D alone", chosen->name)});
+      all.push_back({role.name, fmt::format("is \"{}\", which is available only in 2D", chosen->name)});
   return all;
 }
 
@@ -421,7 +421,7 @@ JointParameters JointMaterial::joint(const Point& x) const {
   const std::string gain = gain_by_slip(joint.law);
   using Friction = laws::MobilisedBartonChoubeyFriction;
   SPREKK_CHECK(gain.empty() || friction != Friction::name || dilation == laws::MobilisedDilation::name,
-               "{}; friction \"{}\" is 0 where slip begins: with it goes dilation \"{}\", which begins later", gain,
+               "{}; friction \"{}\" is 0 at the start of slip and requires dilation \"{}\", which begins later", gain,
                friction, laws::MobilisedDilation::name);
   SPREKK_CHECK(gain.empty(), "{}", gain);
   return joint;

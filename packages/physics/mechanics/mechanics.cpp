@@ -285,10 +285,10 @@ void Mechanics::add_modules(const Setting& setting, Modules& modules) {
 std::vector<std::string> Mechanics::warnings(const Setting& setting) {
   const auto& mesh = setting.mesh;
   if (!is_in(setting.scene) || mesh.dim() != 3 || mesh::order(mesh.shape) != 1 || !has_tips(mesh)) return {};
-  return {fmt::format(
-      "{}: fractures end inside of the rock: in 3D their slip and opening come out some percent too small with cells "
-      "of \"order\" 1; 2 is more accurate, also with the same number of unknowns",
-      setting.scene.origin)};
+  return {
+      fmt::format("{}: fractures end inside of the rock: in 3D their slip and opening are a few percent too small with "
+                  "cells of \"order\" 1; 2 is more accurate, also with the same number of unknowns",
+                  setting.scene.origin)};
 }
 
 std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting, const std::vector<Real>&,
@@ -303,10 +303,11 @@ std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting, co
   std::vector<std::string> warnings;
   for (std::size_t k = 0; k < ran.size(); ++k)
     if (ran[k])
-      warnings.push_back(fmt::format(
-          "{}: slip ran away on \"{}\": the bound fell faster with slip than rock and joint unload. The state "
-          "obeys the law, others between may do so; \"max_runaway_slip\" in results.json is how far",
-          scene.origin, mesh.fracture_names[k]));
+      warnings.push_back(
+          fmt::format("{}: unstable slip on \"{}\": the friction bound decreased faster with slip than rock and joint "
+                      "unload. The state satisfies the law, states in between may do so, too; \"max_runaway_slip\" in "
+                      "results.json is the largest such slip",
+                      scene.origin, mesh.fracture_names[k]));
   return warnings;
 }
 
@@ -338,8 +339,7 @@ std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
   if (of_boundary && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
         return one.second.boundary == J.boundary && !one.second.displacement.empty();
       }))
-    return fmt::format("\"boundary\": is \"{}\", where no displacement is prescribed, so that nothing reacts",
-                       J.boundary);
+    return fmt::format("\"boundary\": is \"{}\", where no displacement is prescribed; it has no reaction", J.boundary);
   return of_boundary || J.boundary.empty() ? ""
                                            : fmt::format("\"boundary\": must be absent: \"{}\" is of none", J.what);
 }

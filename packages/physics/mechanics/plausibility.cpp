@@ -134,7 +134,7 @@ std::string strain_doubt(const Setting& setting, const std::vector<Real>& times)
   return implausible(setting.scene.origin + ": Sprekk > Boundary conditions",
                      fmt::format("displacements at t = {:.4g} s differ by {:.3g} m over {:.3g} m of rock, {:.3g} %",
                                  worst.t, worst.difference, worst.distance, 100 * worst.strain),
-                     "strains are taken as small, and rock fails long before 5 %",
+                     "small strains are assumed, and rock fails far below 5 %",
                      "check the unit of the displacements and of the lengths");
 }
 
@@ -175,8 +175,8 @@ std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
   if (most <= E) return "";
   return implausible(scene.origin + ": Sprekk > Materials",
                      fmt::format("Young's modulus is {:.4g} Pa, and there is a stress of {:.4g} Pa", E, most),
-                     "that strains the rock by more than 100 %",
-                     E < 1e4 ? "write the unit behind the modulus, as in \"50 GPa\"" : "check both units");
+                     "this is a strain of the rock above 100 %",
+                     E < 1e4 ? "write the unit after the modulus, as in \"50 GPa\"" : "check both units");
 }
 
 /// Warns about confining pressures in tension. Collective.
@@ -216,8 +216,8 @@ std::vector<Doubt> stiffness_doubts(const Material& joint, Real E, Real size) {
   for (const char* entry : {"tangential stiffness", "normal stiffness"}) {
     const Real K = number(joint, entry);
     if (E < 1e6 || K < 0.1 || K > 1e4 || K * size > 1e-6 * E) continue;
-    all.push_back({entry, fmt::format("is {:.4g} Pa/m beside rock of {:.4g} Pa", K, E),
-                   "the joint has next to no resistance", "write the unit, as in \"10 GPa/m\""});
+    all.push_back({entry, fmt::format("is {:.4g} Pa/m next to rock with a modulus of {:.4g} Pa", K, E),
+                   "the joint has almost no resistance", "write the unit, as in \"10 GPa/m\""});
   }
   return all;
 }
@@ -227,11 +227,11 @@ std::vector<Doubt> strength_doubts(const Material& joint) {
   std::vector<Doubt> all;
   if (const Real mu = number(joint, "friction coefficient"); mu > 1.5)
     all.push_back({"friction coefficient", fmt::format("is {:.4g}", mu), "rock has 0.2 to 1.2",
-                   "for faces that must not slip give friction \"no slip\"; an angle is a \"friction angle\""});
+                   "to prevent slip use friction \"no slip\"; give an angle as \"friction angle\""});
   for (const char* entry : {"friction angle", "residual friction angle", "basic friction angle", "dilation angle"})
     if (const Real angle = number(joint, entry); angle > 0 && angle < 0.02 * (entry[0] == 'd' ? 1 : 50))
       all.push_back({entry, fmt::format("is {:.4g} degrees", angle),
-                     "that is next to nothing, and an angle in radians would be",
+                     "this is almost zero, and typical of an angle in radians",
                      "write the unit, as in \"30 deg\" or \"0.52 rad\""});
   const Real phi = number(joint, "friction angle"),
              friction = phi > 0 ? std::tan(phi * M_PI / 180) : number(joint, "friction coefficient"),
@@ -239,7 +239,7 @@ std::vector<Doubt> strength_doubts(const Material& joint) {
   if (const Real dilation = number(joint, "dilation angle");
       joint.friction == "Coulomb" && slope > 0 && std::tan(dilation * M_PI / 180) > slope)
     all.push_back({"dilation angle", fmt::format("is {:.4g} degrees", dilation),
-                   fmt::format("that is above the friction angle, {:.4g} degrees: sliding would yield work",
+                   fmt::format("this is above the friction angle, {:.4g} degrees: sliding would produce energy",
                                std::atan(slope) * 180 / M_PI),
                    "friction contains dilation; give a smaller angle"});
   const auto is_infinite = [&](const char* entry) {
@@ -247,7 +247,7 @@ std::vector<Doubt> strength_doubts(const Material& joint) {
     return !value || (value->is_constant() && std::isinf((*value)({}, 0)));
   };
   if (joint.damage != "none" && is_infinite("damage length of friction") && is_infinite("damage length of dilation"))
-    all.push_back({"damage", fmt::format("is \"{}\"", joint.damage), "without a length it damages nothing",
+    all.push_back({"damage", fmt::format("is \"{}\"", joint.damage), "without a damage length it has no effect",
                    "give \"damage length of friction\" or \"damage length of dilation\""});
   return all;
 }
@@ -327,8 +327,8 @@ std::string tension_doubt(const Setting& setting) {
       fmt::format("the initial stress is tension in {:.3g} % of the cells, {:.4g} Pa at ({:.4g}, {:.4g}, "
                   "{:.4g})",
                   100 * volumes[0] / volumes[1], most.value, most.x[0], most.x[1], most.x[2]),
-      "rock at rest is compressed, which has a negative sign here",
-      "check signs and, of a \"lithostatic stress\", the \"surface\", of an \"in-situ stress\" the \"datum\"");
+      "rock at rest is in compression, which is negative",
+      "check the signs, the \"surface\" of a \"lithostatic stress\" and the \"datum\" of an \"in-situ stress\"");
 }
 
 /// Warns if horizontal stresses are zero, or their order is reversed at the bottom of the mesh, or if the vertical
@@ -355,7 +355,8 @@ std::string in_situ_doubt(const Setting& setting) {
     return implausible(place,
                        fmt::format("SHmax is below Shmin, {:.4g} and {:.4g} Pa in a depth of {:.4g} m",
                                    at_foot(stress->largest), at_foot(stress->smallest), depth),
-                       "it is the largest horizontal stress", "exchange them, and turn the \"azimuth\" by 90 degrees");
+                       "it is the largest horizontal stress",
+                       "exchange them, and change the \"azimuth\" by 90 degrees");
   const auto& gravity = scene.bulk.gravity;
   const auto& density = scene.material_of("bulk").density;
   if (gravity.empty() || !density || !density->is_constant()) return "";
@@ -363,7 +364,7 @@ std::string in_situ_doubt(const Setting& setting) {
   if (std::abs(gradient - weight) <= 0.02 * std::abs(weight)) return "";
   return implausible(place,
                      fmt::format("\"Sv gradient\" is {:.4g} Pa/m, and rock weighs {:.4g} Pa/m", gradient, weight),
-                     "the difference moves the rock at the start", "check \"density\" and \"gravity\"");
+                     "the difference displaces the rock at the start", "check \"density\" and \"gravity\"");
 }
 
 /// Warns about fractures whose initial stress exceeds their strength. Collective.
@@ -391,12 +392,13 @@ std::string strength_doubt(const Setting& setting) {
   constexpr std::size_t told = 8;
   const auto n = names.size();
   if (n > told) names.resize(told);
-  return implausible(setting.scene.origin + ": the initial state",
-                     fmt::format("{} beyond the strength of the joint ({:.3g} % of the area): \"{}\"{}",
-                                 n == 1 ? "a fracture is" : fmt::format("{} fractures are", n), 100 * area / total,
-                                 fmt::join(names, "\", \""), n > told ? ", ..." : ""),
-                     "they slip or open in the first step without any load",
-                     "check the initial stress, the pressure and the friction, or take that step as part of the start");
+  return implausible(
+      setting.scene.origin + ": the initial state",
+      fmt::format("{} beyond the strength of the joint ({:.3g} % of the area): \"{}\"{}",
+                  n == 1 ? "a fracture is" : fmt::format("{} fractures are", n), 100 * area / total,
+                  fmt::join(names, "\", \""), n > told ? ", ..." : ""),
+      "they slip or open in the first step without any load",
+      "check the initial stress, the pressure and the friction, or treat this step as part of the initial state");
 }
 
 }  // namespace

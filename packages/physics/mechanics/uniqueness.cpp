@@ -146,13 +146,12 @@ std::string friction_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     joint = called;
   }
   if (joint.empty()) return "";
-  const std::string what =
-      steepest.constant
-          ? fmt::format("the friction coefficient of {} is {:.4g}", joint, steepest.largest)
-          : fmt::format(
-                "the friction bound of {} rises up to {:.4g} times as fast as the compression, and faster "
-                "than it below {:.2g} Pa",
-                joint, steepest.largest, steepest.up_to);
+  const std::string what = steepest.constant
+                               ? fmt::format("the friction coefficient of {} is {:.4g}", joint, steepest.largest)
+                               : fmt::format(
+                                     "the friction bound of {} increases up to {:.4g} times as fast as the "
+                                     "compression, and faster than the compression below {:.2g} Pa",
+                                     joint, steepest.largest, steepest.up_to);
   return what + ": above about 1 equilibrium need not exist, nor be unique";
 }
 
@@ -182,9 +181,8 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   }
   if (weakest.empty()) return "";
   return fmt::format(
-      "the bound of {} falls with slip: under a compression of {:.2g} MPa and more faster than rock as large as "
-      "the "
-      "domain, {:.4g} m, unloads; there slip may run away, in short steps as well",
+      "the bound of {} decreases with slip, above a compression of {:.2g} MPa faster than rock of the size of the "
+      "domain, {:.4g} m, unloads; slip may be unstable there, also in short steps",
       weakest, lowest / 1e6, size);
 }
 
@@ -205,8 +203,8 @@ std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     for (int k = 0; k < 2; ++k)
       if (softens[k] > unloads[k])
         return fmt::format(
-            "the bond of {} softens by {:.2g} Pa/m with {}, and rock as large as the domain, {:.4g} m, unloads by "
-            "{:.2g} Pa/m: there it may break at once, in short steps as well; more \"{}fracture energy\" avoids this",
+            "the bond of {} softens by {:.2g} Pa/m with {}, and rock of the size of the domain, {:.4g} m, unloads by "
+            "{:.2g} Pa/m: the bond may break suddenly, also in short steps; more \"{}fracture energy\" avoids this",
             called, softens[k], k == 0 ? "opening" : "slip", size, unloads[k], k == 0 ? "" : "shear ");
   }
   return "";

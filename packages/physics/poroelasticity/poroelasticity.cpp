@@ -80,10 +80,10 @@ std::vector<std::string> Poroelasticity::warnings(const Setting& setting) {
       return false;
     };
     if (base::any_rank(*mesh.comm, any_low))
-      all.push_back(fmt::format(
-          "{}: Sprekk > Materials > {} > \"Biot coefficient\": is {}, below the porosity {}; rock whose grains are "
-          "stiffer than its skeleton has more",
-          scene.origin, name, material.biot.text(), material.porosity.text()));
+      all.push_back(
+          fmt::format("{}: Sprekk > Materials > {} > \"Biot coefficient\": is {}, below the porosity {}; rock with "
+                      "grains stiffer than its skeleton has a larger coefficient",
+                      scene.origin, name, material.biot.text(), material.porosity.text()));
   }
   return all;
 }

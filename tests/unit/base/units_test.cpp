@@ -106,15 +106,15 @@ TEST(Units, what_measures_something_else_is_refused) {
     return message_of([&] { value_of(text, unit); });
   };
   EXPECT_EQ(refusal("30 m", "Pa"),
-            "has the unit \"m\"; allowed are \"Pa\", \"kPa\", \"MPa\", \"GPa\", \"bar\", \"psi\" and what else "
-            "measures the same");
+            "has the unit \"m\"; allowed are \"Pa\", \"kPa\", \"MPa\", \"GPa\", \"bar\", \"psi\" and other units "
+            "of the same quantity");
   EXPECT_CONTAINS(refusal("30 MPa", "Pa/m"), "has the unit \"MPa\"; allowed are \"Pa/m\", \"kPa/m\", \"MPa/m\"");
   EXPECT_CONTAINS(refusal("30 kg", "kg/m^3"), "allowed are \"kg/m^3\", \"g/m^3\" and");
   EXPECT_CONTAINS(refusal("1 s", "m/s^2"), "allowed are \"m/s^2\", \"km/s^2\"");
   EXPECT_CONTAINS(refusal("30 deg", "-"), "has the unit \"deg\", must be a number without a unit");
   EXPECT_CONTAINS(refusal("1 m", "degree"), "allowed are \"degree\", \"rad\"");
   EXPECT_CONTAINS(refusal("1 N/m", "Pa"), "has the unit \"N/m\"");
-  EXPECT_CONTAINS(refusal("1e305 GPa", "Pa"), "a double does not hold");
+  EXPECT_CONTAINS(refusal("1e305 GPa", "Pa"), "outside of the range of a double");
 }
 
 TEST(Units, texts_that_are_no_units) {
@@ -197,7 +197,7 @@ TEST(Units, errors_name_the_entry_the_value_and_what_is_allowed) {
   EXPECT_EQ(refusal("modulus", "double", "30 m"),
             "f: R > \"modulus\": is \"30 m\", has the unit \"m\"; allowed are \"Pa\", \"kPa\", \"MPa\", \"GPa\", "
             "\"bar\", \"psi\" "
-            "and what else measures the same");
+            "and other units of the same quantity");
   EXPECT_EQ(refusal("ratio", "double", "0.2 mm"),
             "f: R > \"ratio\": is \"0.2 mm\", has the unit \"mm\", must be a number without a unit");
   EXPECT_EQ(refusal("modulus", "double", "30 GPaa"),
@@ -205,11 +205,11 @@ TEST(Units, errors_name_the_entry_the_value_and_what_is_allowed) {
   EXPECT_EQ(refusal("stiffness", "string", "30 GPaa/m"),
             "f: R > \"stiffness\": is \"30 GPaa/m\", neither an expression nor a number with a unit: unknown unit "
             "\"GPaa\". Did you mean \"GPa\"?; allowed are \"Pa/m\", \"kPa/m\", \"MPa/m\", \"GPa/m\", \"bar/m\", "
-            "\"psi/m\" and what "
-            "else measures the same");
+            "\"psi/m\" and "
+            "other units of the same quantity");
   EXPECT_EQ(refusal("end", "string", "1 fortnight"),
             "f: R > \"end\": is \"1 fortnight\", no number with a unit: unknown unit \"fortnight\"; allowed are \"s\", "
-            "\"min\", \"h\", \"day\", \"year\" and what else measures the same");
+            "\"min\", \"h\", \"day\", \"year\" and other units of the same quantity");
   EXPECT_CONTAINS(refusal("corner", "Array(double)", "{0, 3 s}"), "\"corner\"[1]: is \"3 s\", has the unit \"s\"");
   EXPECT_CONTAINS(refusal("traction", "Array(string)", "{3 m, x}"), "\"traction\"[0]: is \"3 m\", has the unit \"m\"");
   EXPECT_CONTAINS(refusal("path", "Array(double)", "{1 mm, 2 mm}"), "\"path\"[1]: is \"2 mm\", has the unit \"mm\"");

@@ -47,7 +47,7 @@ TEST(Xml, values_that_are_not_of_their_type_are_refused) {
   const std::string place = "scene.xml: Sprekk > S > \"a b\": ";
   EXPECT_EQ(refusal(parameter("double", "1.0abc")), place + "is \"1.0abc\", not a number: unknown unit \"abc\"");
   EXPECT_EQ(refusal(parameter("int", "99999999999")),
-            place + "is \"99999999999\", too large for an int; type=\"long long\" holds it");
+            place + "is \"99999999999\", too large for an int; use type=\"long long\"");
   const std::vector<std::array<const char*, 2>> wrong = {{"double", "abc"},
                                                          {"double", ""},
                                                          {"double", "1,5"},

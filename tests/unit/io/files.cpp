@@ -133,7 +133,7 @@ TEST(MakeDirectory, FileInTheWayAndProc) {
   scratch.on_rank_0([&] { io::write_file(scratch / "file", ""); });
   for (const auto& path : {scratch / "file", scratch / "file/below", std::string("/proc/sprekk")}) {
     const auto message = error_of<Error>([&] { io::make_directory(*comm, path); });
-    EXPECT_TRUE(contains(message, path + ": cannot be made a directory: ")) << message;
+    EXPECT_TRUE(contains(message, path + ": cannot be created as a directory: ")) << message;
   }
 }
 

@@ -40,7 +40,7 @@ TEST(MshError, Fractures) {
   EXPECT_THAT(refusal(told("1\n1 x \"a\"\n")), HasSubstr("the number of an entity is \"x\""));
   EXPECT_THAT(refusal(told("2\n1 1 \"a\"\n")), HasSubstr("must be an integer"));
   EXPECT_THAT(refusal(told("2\n1 1 \"a\" \"mu\" \"1\"\n1 2 \"a\" \"mu\" \"2\"\n")),
-              HasSubstr("\"a\" is there twice with different entries"));
+              HasSubstr("\"a\" occurs twice with different entries"));
   auto both = fractures(1);
   both.fractures["west"];
   EXPECT_THAT(refusal(told("2\n1 1 \"a\"\n2 2 \"a\"\n"), both), HasSubstr("\"a\" is in the sets \"f1\" and \"west\""));

@@ -114,7 +114,7 @@ TEST(Newton, EndsWithoutProgress) {
   const auto report = newton.solve(x);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 10);
-  EXPECT_EQ(report.reason, "no progress in 10 iterations: 'r' is 9.90e-01, wanted is 1e-11");
+  EXPECT_EQ(report.reason, "no progress in 10 iterations: 'r' is 9.90e-01, required is 1e-11");
 }
 
 TEST(Damping, SaysWhereNothingHelps) {
@@ -166,7 +166,7 @@ TEST(FreeBodies, ThatFindNoResistanceEndNewton) {
   EXPECT_FALSE(step.converged);
   EXPECT_THAT(step.reason,
               testing::StartsWith("no equilibrium found: in the last iterates a stone can move along (1, 0), "
-                                  "and nothing holds it; t = "));
+                                  "and nothing constrains it; t = "));
 }
 
 /// A floating body in equilibrium is reported, without failure.

@@ -451,7 +451,7 @@ TEST(Preconditioner, ErrorsNameTheEntry) {
   EXPECT_NE(of_ifpack2("ILU", "fact: drop tolerance").find(blocks + "nodes > Ifpack2: "), std::string::npos);
   EXPECT_EQ(of_ifpack2("ILUT", "fact: drop"), blocks +
                                                   "nodes > Ifpack2 > \"fact: drop\": ILUT does not read this "
-                                                  "parameter; see Ifpack2's manual for those that it has");
+                                                  "parameter; see the manual of Ifpack2 for its parameters");
   const auto of_relaxation = of_ifpack2("RELAXATION", "relaxation: swep");
   EXPECT_NE(of_relaxation.find("relaxation: swep"), std::string::npos) << of_relaxation;
   const auto of_muelu = error_of([](auto& o) {
@@ -464,7 +464,7 @@ TEST(Preconditioner, ErrorsNameTheEntry) {
   EXPECT_NE(error_of([](auto& o) {
               o.blocks["cells"].with = "nodes";
               o.blocks["nodes"].type = "multigrid";
-            }).find("nodes > \"type\": multigrid is for blocks whose unknowns have places"),
+            }).find("nodes > \"type\": multigrid requires blocks of unknowns with coordinates"),
             std::string::npos);
 }
 

@@ -37,7 +37,7 @@ TEST(Held, TractionAndRollersAlone) {
       load(scene, "north", first<std::string>(dim, {"0", "-1e3", "0"}));
       prescribe(scene, "south", first<std::string>(dim, {"free", "0", "free"}));
       EXPECT_THAT(error_of(scene),
-                  AllOf(HasSubstr("nothing holds the rock of \"bulk\""),
+                  AllOf(HasSubstr("nothing constrains the rock of \"bulk\""),
                         HasSubstr(dim == 2 ? "it can move along (1, 0)." : "it can move along (1, 0, 0)"),
                         HasSubstr(dim == 2 ? "cells of" : "it can rotate about the axis (0, 1, 0) through (1, 1, 1)"),
                         HasSubstr("prescribe the displacements")))
@@ -75,7 +75,7 @@ TEST(Conflicts, OfTwoRegionsAndOnTiedSidesAreNamed) {
       auto tied = pillar(cells);
       tied.mesh.periodic = {"x"};
       prescribe(tied, "west", rest);
-      EXPECT_THAT(error_of(tied), AllOf(HasSubstr("west  held"), HasSubstr("\"periodic\" ties to the opposite side")));
+      EXPECT_THAT(error_of(tied), AllOf(HasSubstr("west  held"), HasSubstr("\"periodic\" connects to the opposite side")));
       tied.boundary_conditions.erase("west  held");
       prescribe(tied, "south", rest);
       EXPECT_EQ(error_of(tied), "");

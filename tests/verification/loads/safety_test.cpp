@@ -112,7 +112,7 @@ TEST(FactorOfSafety, Refuses) {
   EXPECT_THAT(message({"Materials.joint.friction angle=20", "Mesh.cells={4, 4}"}),
               testing::HasSubstr("found no equilibrium with its own strength"));
   EXPECT_THAT(message({"Stages.s.time=0.5", "Stages.s.Materials.joint.strength reduction factor=2", "Time.end=1"}),
-              testing::HasSubstr("is what is looked for; leave it out"));
+              testing::HasSubstr("is the result of the search; leave it out"));
   EXPECT_THAT(message({"Materials.joint.strength reduction factor=0"}), testing::HasSubstr("must be positive"));
 }
 

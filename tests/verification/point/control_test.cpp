@@ -167,8 +167,8 @@ TEST(Control, WhatDeterminesNoStateIsAnErrorThatSaysWhy) {
           "n = -0.3, traction t = 0.2: the shear traction exceeds the friction bound, the joint slides without bound; "
           "the last state is that at t = 3.6");
   const std::pair<Overrides, const char*> cases[] = {
-      {{"Point.control={traction, jump}", "Point.path={0.3, 0.1}"}, "an open joint bears no traction"},
-      {{"Point.control={jump, traction}", "Point.path={0.3, 0.1}"}, "an open joint bears no traction"},
+      {{"Point.control={traction, jump}", "Point.path={0.3, 0.1}"}, "an open joint has no traction"},
+      {{"Point.control={jump, traction}", "Point.path={0.3, 0.1}"}, "an open joint has no traction"},
       {{"Point.control={jump, jump}", "Point.path={-0.1, 0.1}"}, "the faces touch and do not close"},
       {{"Point.control={jump, column}", "Point.path={0, 0.1}"}, "the faces touch and do not close"},
       {{"Point.control={traction, traction}", "Point.path={-1e7, 7e6}", rigid}, "slides without bound"},

@@ -77,7 +77,7 @@ TEST(Specimens, AreInsteadOfAPoint) {
     shear_tests({"Point.material=joint", "Point.control={jump, jump}", "Point.path={0, 0}"});
     ADD_FAILURE();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("Specimens: are there beside \"Point\""), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("Specimens: given in addition to \"Point\""), std::string::npos)
         << error.what();
   }
 }
