@@ -75,7 +75,8 @@ TEST(Conflicts, OfTwoRegionsAndOnTiedSidesAreNamed) {
       auto tied = pillar(cells);
       tied.mesh.periodic = {"x"};
       prescribe(tied, "west", rest);
-      EXPECT_THAT(error_of(tied), AllOf(HasSubstr("west  held"), HasSubstr("\"periodic\" connects to the opposite side")));
+      EXPECT_THAT(error_of(tied),
+                  AllOf(HasSubstr("west  held"), HasSubstr("\"periodic\" connects to the opposite side")));
       tied.boundary_conditions.erase("west  held");
       prescribe(tied, "south", rest);
       EXPECT_EQ(error_of(tied), "");
