@@ -141,13 +141,13 @@ class Packages(unittest.TestCase):
 
     def test_6_development(self):
         self.debian.install("g++", "cmake", "ninja-build", "/packages/libsprekk-dev_*.deb")
-        self.debian.put(ROOT / "tests/embedding/outside", "home/user/host")
-        self.debian.put(ROOT / "xml/seed/push_2d.xml", "home/user")
+        self.debian.put(ROOT / "tests/embedding/outside", "host")
+        self.debian.put(ROOT / "xml/seed/push_2d.xml", "host")
         for file in ("own_unknown.cpp", "grout.hpp", "coupled.cpp", "coupled.hpp", "own_flow.hpp", "reservoir.hpp"):
-            self.debian.put(ROOT / "apps/hosts" / file, "home/user/host")
-        self.debian.put(ROOT / "apps/multigrid/elasticity.cpp", "home/user/host")
-        self.user("cmake -S host -B host/build -G Ninja && ninja -C host/build my_host")
-        self.assertIn("face ", self.user("host/build/my_host push_2d.xml"))
+            self.debian.put(ROOT / "apps/hosts" / file, "host")
+        self.debian.put(ROOT / "apps/multigrid/elasticity.cpp", "host")
+        self.user("cmake -S /host -B host -G Ninja && ninja -C host my_host")
+        self.assertIn("face ", self.user("host/my_host /host/push_2d.xml"))
 
     def test_7_pip(self):
         """The source archive, without git, with a virtual environment and with Debian's Python."""
