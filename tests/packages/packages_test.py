@@ -45,10 +45,10 @@ class Debian:
         self.folder = folder
         subprocess.run(["debootstrap", "--variant=minbase", "bookworm", folder, mirror()], check=True,
                        stdout=subprocess.DEVNULL)
-        for name in ("resolv.conf", "hosts", "ssl/certs/ca-certificates.crt"):
+        copies = {"resolv.conf": "etc", "hosts": "etc", "ssl/certs/ca-certificates.crt": "certificates.crt"}
+        for name, to in copies.items():
             if Path("/etc", name).exists():
-                (folder / "etc" / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(Path("/etc", name), folder / "etc" / name)
+                shutil.copy(Path("/etc", name), folder / to)
         self.cache = Path(os.environ.get("CCACHE_DIR", Path.home() / ".cache/ccache"))
         self.cache.mkdir(parents=True, exist_ok=True)
         (folder / "ccache").mkdir()
@@ -60,6 +60,8 @@ class Debian:
         """What a command of bash prints, started in the user's home; its mounts and processes end with it."""
         home = "/root" if user == "root" else f"/home/{user}"
         surroundings = {name: value for name, value in os.environ.items() if re.match("PIP_|.*_proxy$", name)}
+        if (self.folder / "certificates.crt").exists():
+            surroundings["PIP_CERT"] = "/certificates.crt"  # also those of a proxy of this machine
         surroundings |= {"PATH": "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": home, "LC_ALL": "C.UTF-8",
                          "DEBIAN_FRONTEND": "noninteractive", "CCACHE_DIR": "/ccache", "CC": "cc", "CXX": "c++"}
         enter = (f"mount --bind {self.cache} {self.folder}/ccache && mount -t sysfs sysfs {self.folder}/sys && "
