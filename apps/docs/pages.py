@@ -50,7 +50,11 @@ def of_notebook(path, _):
 
 
 def of_source(path, name):
-    return f"# {name}\n\n{raw(path)}\n\n" + fence(path.read_text(), LANGUAGES.get(path.suffix, "text"))
+    try:
+        text = fence(path.read_text(), LANGUAGES.get(path.suffix, "text"))
+    except UnicodeDecodeError:
+        text = "This file is binary.\n"
+    return f"# {name}\n\n{raw(path)}\n\n" + text
 
 
 def of_gallery(root):
