@@ -2,7 +2,7 @@
 # not committed. In a source archive git has replaced the placeholder in commit.txt.
 cmake_minimum_required(VERSION 3.25)
 if(EXISTS ${SOURCE}/.git)
-  execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=9 --exclude=*
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env GIT_OPTIONAL_LOCKS=0 git -C ${SOURCE} describe --always --dirty --abbrev=9 --exclude=*
     OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 else()
   file(STRINGS ${SOURCE}/cmake/commit.txt commit)

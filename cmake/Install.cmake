@@ -11,6 +11,7 @@ install(FILES perf/contact/joint_laws.py perf/contact/violation.py DESTINATION $
 install(FILES docs/use/reference.md DESTINATION ${home}/docs/use COMPONENT program)
 install(DIRECTORY xml/ DESTINATION ${home}/xml COMPONENT program)
 install(FILES ${CMAKE_BINARY_DIR}/report/viewer.js.bundle DESTINATION ${home}/report COMPONENT program OPTIONAL)
+install(FILES ${CMAKE_BINARY_DIR}/report/viewer.licenses DESTINATION share/doc/sprekk COMPONENT program OPTIONAL)
 file(CREATE_LINK ../${home}/sprekk ${CMAKE_BINARY_DIR}/sprekk SYMBOLIC)
 install(FILES ${CMAKE_BINARY_DIR}/sprekk DESTINATION bin COMPONENT program)
 install(FILES LICENSE DESTINATION share/doc/sprekk RENAME copyright COMPONENT program)

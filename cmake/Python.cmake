@@ -11,4 +11,8 @@ set(SPREKK_PYTHON ${Python_EXECUTABLE})
 set(PYBIND11_FINDPYTHON ON)
 find_package(Python QUIET COMPONENTS Interpreter Development.Module)
 find_package(pybind11 2.10 QUIET)
+if(pybind11_VERSION VERSION_GREATER_EQUAL 3)  # rejects call guards of properties
+  message(STATUS "pybind11 ${pybind11_VERSION}: the Python module requires a version below 3")
+  set(pybind11_FOUND FALSE)
+endif()
 set(SPREKK_PYTHON_MODULE ${pybind11_FOUND})

@@ -44,10 +44,10 @@ def machine():
     return f"{field('/proc/cpuinfo', 'model name')}, {os.cpu_count()} cores, {memory} GiB, {version}"
 
 
-def targets(name):
-    """Those that the measurement declares, by the name of the result."""
-    path = ROOT / f"perf/{name}/{name}.py"
-    specification = importlib.util.spec_from_file_location(f"measurement_{name}", path)
+def targets(name, file):
+    """Targets that perf/NAME/FILE.py declares, by the name of the result."""
+    path = ROOT / f"perf/{name}/{file}.py"
+    specification = importlib.util.spec_from_file_location(f"measurement_{file}", path)
     module = importlib.util.module_from_spec(specification)
     sys.path.insert(0, str(path.parent))
     sys.modules[specification.name] = module
@@ -83,20 +83,21 @@ def main(name, words):
     parser.add_argument("--save", nargs="?", const=name)
     parser.add_argument("--output", type=Path, default=Path(f"output/perf/{name}"))
     options, rest = parser.parse_known_args(words)
-    if not re.fullmatch(r"[a-z]\w*", options.save):
+    if not re.fullmatch(r"[a-z]\w*", options.save or ""):
         parser.error(f'argument --save: "{options.save}" is no name of a file: use lower-case letters, digits and "_"')
     header = [("command", shlex.join(["./sprekk", "perf", name, *rest])),
               ("commit", commit()),
               ("machine", machine()),
               ("date", datetime.date.today().isoformat()),
               ("load", f"{os.getloadavg()[0]:.1f} other processes at the start")]
+    declared = targets(name, "scale" if "--scale" in rest else name)
     since = time.time() - 1
     status, results = run(name, rest, options.output)
     columns, rows = tables(options.output, since)
     if not rows or status < 0:
         sys.exit(f"sprekk perf {name}: status {status}, and no table to save in {options.output}")
     header += [("result", line) for line in results]
-    header += [("target", " ".join(f"{key}={value:g}" for key, value in targets(name).items()))]
+    header += [("target", " ".join(f"{key}={value:g}" for key, value in declared.items()))]
     file = ROOT / f"docs/results/{options.save}.csv"
     with open(file, "w", newline="") as opened:
         opened.writelines(f"# {key}: {value}\n" for key, value in header if value)

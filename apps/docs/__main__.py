@@ -65,6 +65,7 @@ def build(site):
         shutil.copytree(KATEX / "fonts", folder / "assets/katex/fonts")
         for name in ("katex.min.js", "katex.min.css"):
             shutil.copy(KATEX / name, folder / "assets/katex" / name)
+        shutil.copy("/usr/share/doc/libjs-katex/copyright", folder / "assets/katex")
         config = load_config(str(ROOT / "docs/mkdocs.yml"), docs_dir=temporary, site_dir=str(site), strict=True)
         config["nav"] = pages.navigation(ROOT)
         try:

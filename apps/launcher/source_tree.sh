@@ -105,7 +105,8 @@ make_viewer() {
   mkdir -p "$folder" && cp "$source"/{package.json,package-lock.json,viewer.js} "$folder" || return
   say "bundling the 3D view of reports"
   (cd "$folder" && timeout 300 npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 &&
-    node_modules/.bin/esbuild viewer.js --bundle --minify --target=es2020 --log-level=warning --outfile="$1.part") \
+    node_modules/.bin/esbuild viewer.js --bundle --minify --target=es2020 --log-level=warning --outfile="$1.part" &&
+    find node_modules -maxdepth 3 -iname 'licen[cs]e*' -type f -printf '\n%p\n\n' -exec cat {} \; >viewer.licenses) \
     >"$folder/npm.log" 2>&1 </dev/null || return
   mv "$1.part" "$1" && echo "$input" >"$folder/input"
 }
@@ -180,7 +181,8 @@ make_packages() {
     -D CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS="$(comma_separated "${libraries[@]}")"
   mv "$build"/cpack/*.deb "$folder"
   logged wheel env CC="$(cached CMAKE_C_COMPILER)" CXX="$(cached CMAKE_CXX_COMPILER)" \
-    "$(debian_python)" -m pip wheel --no-deps --wheel-dir "$folder" "$root"
+    "$(debian_python)" -m pip wheel --no-deps --config-settings=build-dir=build-wheel \
+    --wheel-dir "$folder" "$root"
   version=$(cached CMAKE_PROJECT_VERSION)
   if [[ -e $root/.git ]]; then
     [[ ! $(git -C "$root" status --porcelain) ]] || say "the source archive is without the changes since the last commit"

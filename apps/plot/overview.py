@@ -57,7 +57,7 @@ def of_step(rock, joints, scene, title):
         norm, colours = range_of_change(np.concatenate([in_rock, inside]))
         right.add_collection(PolyCollection(surface.corners(surface.points[:, :2]), array=in_rock, cmap=colours, norm=norm,
                                             antialiaseds=False))
-        draw_lines(right, lines, aperture / np.max(aperture), inside, norm, colours)
+        draw_lines(right, lines, aperture / max(np.max(aperture), 1e-300), inside, norm, colours)
         colour_bar(figure, right, norm, colours, label + ", width: aperture", **where)
         for ax in (left, right):
             ax.margins(0.02)

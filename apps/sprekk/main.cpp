@@ -99,7 +99,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   safety->add_flag("--quiet", arguments.quiet, "print the factor alone, not what was tried");
   run->add_option("--output", options.output, "directory for the results; default output/SCENE and the values of --set")
       ->check([](const std::string& name) { return name.empty() ? "is empty, must name a directory" : ""; });
-  run->add_flag("--restart", options.restart, "go on from the last checkpoint in the output directory");
+  run->add_flag("--restart", options.restart, "continue from the last checkpoint in the output directory");
 }
 
 /// What is wrong with the command line, and where the shell may have split an argument.

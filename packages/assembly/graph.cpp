@@ -19,7 +19,7 @@ using HostTable = decltype(to_host({}));
 std::shared_ptr<const Writers> writers_of(const Stencil& rows, LocalIndex n_rows) {
   const auto kept = rows.writers.lock();
   if (kept && *kept) {
-    SPREKK_CHECK((*kept)->n_rows() == n_rows, "writers of {} rows are asked for {}", (*kept)->n_rows(), n_rows);
+    SPREKK_CHECK((*kept)->n_rows() == n_rows, "the graph has {} rows, required are {}", (*kept)->n_rows(), n_rows);
     return *kept;
   }
   const auto writers = std::make_shared<const Writers>(rows.first, n_rows);

@@ -506,7 +506,7 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   const auto take_scales = [&] {
     for (auto& [name, scale] : scales_) {
       const auto kept = memory.scales.find(name);
-      SPREKK_CHECK(kept != memory.scales.end(), "the scale \"{}\" is not in what a system is to go on from", name);
+      SPREKK_CHECK(kept != memory.scales.end(), "the scale \"{}\" is missing in the stored state", name);
       scale = kept->second;
     }
   };

@@ -5,9 +5,11 @@
 #include "base/over_ranks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 namespace sprekk::assembly {
 
@@ -313,16 +315,30 @@ View<Real*> System::rounding_of_others(int b, const BlockVector& x) const {
 
 namespace {
 
-/// Difference between the largest and the smallest value of x on all ranks. Collective.
-Real range_of(const fields::Vector& x) {
-  const auto values = x.getLocalViewHost(Tpetra::Access::ReadOnly);
-  Real largest = -std::numeric_limits<Real>::infinity(), least_negative = largest;
-  for (std::size_t i = 0; i < values.extent(0); ++i) {
-    largest = std::max<Real>(largest, values(i, 0));
-    least_negative = std::max<Real>(least_negative, -values(i, 0));
+/// Difference between the largest and the smallest value of the balanced unknowns with the same scale, by the name of
+/// the scale. Collective.
+Scales ranges_of_balances(const Teuchos::Comm<int>& comm, const std::vector<Unknown>& unknowns, const BlockVector& x) {
+  constexpr Real infinity = std::numeric_limits<Real>::infinity();
+  std::map<std::string, std::array<Real, 2>> ends;  // largest value and largest negative value
+  for (std::size_t b = 0; b < unknowns.size(); ++b) {
+    if (!unknowns[b].balance) continue;
+    auto& [largest, largest_negative] =
+        ends.try_emplace(unknowns[b].scale, std::array{-infinity, -infinity}).first->second;
+    const auto values = x[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (std::size_t i = 0; i < values.extent(0); ++i) {
+      largest = std::max<Real>(largest, values(i, 0));
+      largest_negative = std::max<Real>(largest_negative, -values(i, 0));
+    }
   }
-  const auto ends = base::max_over_ranks(*x.getMap()->getComm(), std::vector<Real>{largest, least_negative});
-  return ends[0] + ends[1];
+  std::vector<Real> here;
+  for (const auto& [scale, end] : ends) here.insert(here.end(), end.begin(), end.end());
+  const auto all = base::max_over_ranks(comm, here);
+  Scales ranges;
+  for (auto value = all.begin(); const auto& [scale, end] : ends) {
+    ranges[scale] = value[0] + value[1];
+    value += 2;
+  }
+  return ranges;
 }
 
 }  // namespace
@@ -331,6 +347,7 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
   constexpr Real most_noise = 1e-5;   // relative to the loads
   constexpr Real least_range = 1e-4;  // relative to the level of a balanced quantity
   refresh_ghosts(x, false);
+  const auto ranges = ranges_of_balances(*comm(), unknowns_, x);
   std::vector<Measure> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto& unknown = unknowns_[b];
@@ -349,7 +366,8 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
     const bool balance = unknown.balance;  // conductances of rows differ
     const bool bounded = !balance && !traction, carried = carried_[b];
     // Differences of the unknown drive its fluxes: errors are relative to these, not to the level.
-    const Real driving = balance ? std::min(held_scale, std::max(range_of(*x[b]), least_range * held_scale)) : 0;
+    const Real driving =
+        balance ? std::min(held_scale, std::max(ranges.at(unknown.scale), least_range * held_scale)) : 0;
     Real stored = 0;  // round-off of the storage terms
     for (const auto& term : unknown.row)
       if (term.per_step) stored += term.factor * rounding(x, term.scale) / dt_;

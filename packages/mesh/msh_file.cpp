@@ -89,9 +89,9 @@ class Parser {
     if (line != version + " 1 8")
       in_.fail(fmt::format("found \"{}\", expected the version, 0 (text) or 1 (binary), and 8", printable(line)));
     in_.set_format(true, is_version_4_);
-    const auto one = in_.raw<std::int32_t>("the number 1 that tells the order of bytes");
+    const auto one = in_.raw<std::int32_t>("the number 1 for the byte order");
     if (one == 0x01000000) in_.fail("was written on a machine with another order of bytes; save it as text there");
-    if (one != 1) in_.fail(fmt::format("found {}, expected the number 1 that tells the order of bytes", one));
+    if (one != 1) in_.fail(fmt::format("found {}, expected the number 1 for the byte order", one));
   }
 
   void read_names() {

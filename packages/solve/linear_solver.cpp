@@ -80,7 +80,7 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::v
   std::string reason = options.type == "auto"
                            ? fmt::format("{}: {} with {} unknowns; direct up to {}", direct ? "direct" : "iterative",
                                          is_3d ? "3D" : "2D", n, limit)
-                           : fmt::format("{}: asked for; {} unknowns", options.type, n);
+                           : fmt::format("{}: selected; {} unknowns", options.type, n);
   if (!direct) {
     make_direct_solver(options.mumps);  // only for its checks
     return {make_iterative_solver(options, blocks), reason};

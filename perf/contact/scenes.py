@@ -47,7 +47,7 @@ def held(end, **loads):
 SOFT_CLOSURE = dict(closure="1e-2", normal="1")     # relative to E = 1 and a domain of size 1
 STIFF_CLOSURE = dict(closure="1e-4", normal="1e3")
 NO_EQUILIBRIUM = r"no equilibrium"
-FREE = r"(free to move|can move|nothing holds|singular mode)"
+FREE = r"(free to move|can move|can rotate|nothing constrains|singular mode)"
 
 
 def seed():

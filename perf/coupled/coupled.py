@@ -26,7 +26,7 @@ COLUMNS = ("scene", "cells", "steps", "median", "max", "cuts", "fluid", "energy"
 AGAIN = ("2 ranks", "renamed", "restart", "3 ranks", "renumbered", "repeated")  # scene k is run in way k of these, too
 ATTEMPTS = 10
 # scenes with these messages are drawn again
-NO_SCENE = ("slip would produce energy", "a well as wide as", "the hydraulic aperture is")
+NO_SCENE = ("slip would produce energy", "too large for the cell at", "the hydraulic aperture is")
 
 
 @dataclass

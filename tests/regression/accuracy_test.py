@@ -119,7 +119,7 @@ class Accuracy(ProgramTest):
         self.refuse(['"quantity": is "slipp", must be one of', 'Did you mean "slip"?'], CROSSING, *goal("slipp", relative=0.01))
         self.refuse(['goal: needs "relative", "absolute", or both'], CROSSING, *goal("slip"))
         self.refuse(['Accuracy > quantities > goal > "fractures": is "flatt", must be one of "flat", "steep"'], CROSSING, *goal("slip", fractures="{flatt}", relative=0.01))
-        self.refuse(['"fractures": must be absent: "stress" is of none'], CROSSING, *goal("stress", fractures="{flat}", relative=0.01))
+        self.refuse(['"fractures": must be absent: "stress" takes none'], CROSSING, *goal("stress", fractures="{flat}", relative=0.01))
         self.refuse(['"component": is z, must be x or y in 2D'], CROSSING, *goal("reaction", relative=0.01, boundary="north", component="z"))
         self.refuse(['"boundary": missing; it is required of a reaction'], CROSSING, *goal("reaction", relative=0.01))
         self.refuse(['goal > "boundary": is "east", where no displacement is prescribed'], "accuracy/fault_2d.xml", "Accuracy.quantities.goal.quantity=reaction",

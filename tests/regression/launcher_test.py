@@ -134,6 +134,9 @@ class Launcher(ProgramTest):
         self.assertNotRegex(self.launch("--help", launcher="prefix/bin/sprekk")[0], "[.]/sprekk|sprekk test")
         self.assertRegex(self.launch("plot", "out", expect=1, launcher="prefix/bin/sprekk")[1],
                          "^sprekk: packages are missing; install them with: sudo apt-get install .*python3-vtk9\n$")
+        shutil.copytree(ROOT / "xml/new", home / "xml/new")
+        out, _ = self.launch("new", "slope", "a.xml", launcher="prefix/bin/sprekk")
+        self.assertEqual(out, "wrote a.xml; next: sprekk run a.xml\n")
         for command in ("build", "test", "perf", "fuzz", "package", "docs"):
             self.assertEqual(self.launch(command, expect=1, launcher="prefix/bin/sprekk"),
                              ("", f"sprekk: {command} requires the source tree of Sprekk\n"))

@@ -139,7 +139,7 @@ void compare_rock(Comparison& c, const Material& rock) {
 
 std::string Flow::no_error_estimate(const Scene& scene) {
   if (has_unknown_pressure(scene) && !scene.flow)
-    return "is of a fluid whose pressure the run finds itself or is told, not of a host's that finds it here";
+    return "is not available where a host program computes the pressure";
   if (!scene.flow) return "";
   const auto& flow = *scene.flow;
   const auto any = [](const auto& all, const auto& has) {

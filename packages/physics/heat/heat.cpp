@@ -433,7 +433,7 @@ std::vector<std::string> Heat::plausibility(const Setting& setting, const std::v
   const auto see = [&](const std::string& place, const base::Expression& T) {
     if (T.is_constant() && T({}, 0) != 0 && T({}, 0) < coldest)
       all.push_back(implausible(fmt::format("{}: Sprekk > {}", scene.origin, place), fmt::format("is {} K", T.text()),
-                                "rock is hardly that cold",
+                                "rock is rarely so cold",
                                 "temperatures are in K: add 273.15 to those in degrees Celsius"));
   };
   if (is_in(scene)) for_each_temperature(scene, see);

@@ -102,7 +102,7 @@ std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, co
       if (meets[k * n_regions + region])
         lines.push_back(
             fmt::format("the rock of \"{}\" {}, and the fracture \"{}\" meets it; that can only happen in "
-                        "rock beside which there is no fracture",
+                        "rock without adjacent fractures",
                         name, what, mesh.fracture_names[k]));
     if (has_tips[region])
       lines.push_back(fmt::format("the rock of \"{}\" {}, and there are crack tips in it", name, what));

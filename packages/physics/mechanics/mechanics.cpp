@@ -316,9 +316,9 @@ std::string Mechanics::no_error_estimate(const Scene& scene) {
   const auto& conditions = scene.boundary_conditions;
   if (std::any_of(conditions.begin(), conditions.end(),
                   [](const auto& condition) { return !condition.second.foundation_stiffness.empty(); }))
-    return "is of boundaries whose tractions or displacements are given; not available with \"foundation stiffness\"";
-  if (scene.keeps_stress) return "is of the strain alone, and stress goes on from other constants or before a fill";
-  return has_solid_pressure(scene) ? "is of displacements alone, and nearly incompressible rock has a pressure" : "";
+    return "requires boundaries with given tractions or displacements; not available with \"foundation stiffness\"";
+  if (scene.keeps_stress) return "is not available after changes of elastic constants or a backfill";
+  return has_solid_pressure(scene) ? "is not available in nearly incompressible rock" : "";
 }
 
 std::vector<QuantityKind> Mechanics::quantities() {
@@ -331,9 +331,9 @@ std::vector<QuantityKind> Mechanics::quantities() {
 }
 
 std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
-  if (!J.well.empty()) return fmt::format("\"well\": must be absent: \"{}\" is of none", J.what);
+  if (!J.well.empty()) return fmt::format("\"well\": must be absent: \"{}\" takes none", J.what);
   const bool of_boundary = J.what == "reaction", of_all = of_boundary || J.what == "stress";
-  if (of_all && !J.fractures.empty()) return fmt::format("\"fractures\": must be absent: \"{}\" is of none", J.what);
+  if (of_all && !J.fractures.empty()) return fmt::format("\"fractures\": must be absent: \"{}\" takes none", J.what);
   if (of_boundary && J.boundary.empty()) return "\"boundary\": missing; it is required of a reaction";
   const auto& conditions = scene.boundary_conditions;
   if (of_boundary && std::none_of(conditions.begin(), conditions.end(), [&](const auto& one) {
@@ -341,7 +341,7 @@ std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
       }))
     return fmt::format("\"boundary\": is \"{}\", where no displacement is prescribed; it has no reaction", J.boundary);
   return of_boundary || J.boundary.empty() ? ""
-                                           : fmt::format("\"boundary\": must be absent: \"{}\" is of none", J.what);
+                                           : fmt::format("\"boundary\": must be absent: \"{}\" takes none", J.what);
 }
 
 std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillates) {

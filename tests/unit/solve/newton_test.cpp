@@ -196,7 +196,7 @@ TEST(NewtonOptions, AreReadFromParameters) {
   GridProblem problem(Tpetra::getDefaultComm(), {});
   const Newton newton(problem, options);
   const auto text = newton.linear().solver().describe();
-  EXPECT_EQ(text.find("direct: asked for; 60 unknowns"), 0u) << text;
+  EXPECT_EQ(text.find("direct: selected; 60 unknowns"), 0u) << text;
   EXPECT_NE(text.find("ICNTL(14) = 55"), std::string::npos) << text;
   EXPECT_NE(text.find("ICNTL(7) = 7"), std::string::npos) << text;
   linear.set("type", "fast");
