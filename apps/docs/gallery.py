@@ -39,6 +39,11 @@ PICTURES = {
     "networks/biaxial_2d": "bulk",
     "networks/great_cell_2d": "bulk",
     "networks/triaxial_3d": "bulk",
+    "networks/stimulation_2d": "overview",
+    "new": "maps bulk",
+    "new/doublet": "temperature",
+    "new/injection": "overview maps",
+    "new/first_scene": "bulk",
     "performance": "flow bulk",
     "poro": "maps flow bulk",
     "poro/injection_days_2d": "series",
@@ -68,8 +73,12 @@ def purpose(text):
     return " ".join(comment[1].split()) if comment else None
 
 
-def command(scene):
-    verb = "point" if scene.parts[1] == "point" else "run"
+def is_point(root, scene):
+    return 'name="Point"' in (root / scene).read_text()
+
+
+def command(root, scene):
+    verb = "point" if is_point(root, scene) else "run"
     return f"./sprekk {verb} {scene}" + (f" > {scene.stem}.csv" if verb == "point" else "")
 
 
@@ -100,7 +109,7 @@ def limited():
 def compute(root, scene, results):
     """Runs a scene: (path for `sprekk plot`, processor time); (None, None) above the limit."""
     program, begin = root / "sprekk", processor_time()
-    if scene.parts[1] == "point":
+    if is_point(root, scene):
         words, made = [program, "point", scene], results.with_name(results.name + ".csv")
     else:
         words, made = [program, "run", scene, "--output", results, "--quiet", "--set", "Output.vtu=true"], results
@@ -129,7 +138,7 @@ def draw(plot, scene, made, target):
     from PIL import Image
     from style import plt, save
     topic = scene.parts[1]
-    wanted = scene.stem if topic == "point" else PICTURES.get(f"{topic}/{scene.stem}", PICTURES.get(topic, "bulk"))
+    wanted = scene.stem if made.is_file() else PICTURES.get(f"{topic}/{scene.stem}", PICTURES.get(topic, "bulk"))
     names, found = wanted.split(), {}
     try:
         for name, figure in plot.of_run(made, plot.arguments([str(made)])) if made.is_dir() else plot.of_csv(made):

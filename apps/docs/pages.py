@@ -75,7 +75,7 @@ def of_gallery(root):
             picture = f"[![{scene.stem}]({file}){{ loading=lazy }}]({file})\n\n"
         text = html.escape(gallery.purpose((root / scene).read_text()) or "", quote=False)
         parts.append(f"<div markdown>\n\n### [{scene.stem}]({scene})\n\n{picture}{text}\n\nRun time: {time}\n\n"
-                     f"```sh\n{gallery.command(scene)}\n```\n\n</div>\n")
+                     f"```sh\n{gallery.command(root, scene)}\n```\n\n</div>\n")
     return "\n".join(parts) + "\n</div>\n"
 
 
