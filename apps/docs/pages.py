@@ -148,7 +148,7 @@ def navigation(root):
             pages.append({line.split("**")[1]: (group := [])})
         elif line.startswith("| ["):
             links = re.findall(r"\[([^\]]+)\]\(([^)#]+)\)", line.split("|")[1])
-            group += [{title(name): f"docs/{link}"} for name, link in links]
+            group += [{title(name): os.path.normpath(f"docs/{link}")} for name, link in links]
     if len(books) == 1:
         raise PageError("docs/README.md: has no section with a table of pages")
     return books + [{"Gallery": [GALLERY]}, {"Interfaces": [{"Python": PYTHON}, {"C++": CPP}]}]
