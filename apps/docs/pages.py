@@ -66,7 +66,8 @@ def of_gallery(root):
         if scene.parts[1] != topic:
             topic = scene.parts[1]
             parts += ["</div>\n"] * (len(parts) > 1)
-            parts.append(f'## {topic.capitalize()}\n\n<div class="gallery" markdown>\n')
+            heading = "Example scenes of sprekk new" if topic == "new" else topic.capitalize()
+            parts.append(f'## {heading}\n\n<div class="gallery" markdown>\n')
         picture, time = "", "not measured"
         if row:
             time = row["seconds"].replace(">", "more than ") + " s"
