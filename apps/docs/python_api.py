@@ -4,6 +4,8 @@ import html
 import inspect
 import re
 
+PAGE = re.compile(r"\bdocs/\w+/\w+\.md\b")
+RETURNED = {"Unknown": [("State", "module.py")], "fit": [("Estimate", "../../fit/estimate.py")]}  # classes not imported
 ENTRY = re.compile(r"^(\w+(?:, \w+)*)(?:  +|: )(\S.*)$")  # of a list of arguments
 
 
@@ -13,6 +15,15 @@ def public(package):
         if isinstance(node, ast.ImportFrom) and node.level == 1 and node.module and node.module != "_sprekk":
             for alias in node.names:
                 yield alias.name, package / f"{node.module}.py"
+                for name, file in RETURNED.get(alias.name, []):
+                    yield name, package / file
+
+
+def markdown(text):
+    """Escaped text, except in code; names of pages become links."""
+    parts = re.split(r"(`[^`]*`)", text)
+    return "".join(part if k % 2 else PAGE.sub(r"[\g<0>](../\g<0>)", html.escape(part, quote=False))
+                   for k, part in enumerate(parts))
 
 
 def text_of(node):
@@ -23,13 +34,13 @@ def text_of(node):
         if entry and "  " in line[:len(entry[1]) + 2]:
             if not found or not found[-1].startswith(("* ", "    ")):
                 found.append("")
-            found.append(f"* `{entry[1]}`: {html.escape(entry[2], quote=False)}")
+            found.append(f"* `{entry[1]}`: {markdown(entry[2])}")
         elif found and found[-1].startswith(("* ", "    ")) and line.startswith(" "):
-            found.append("    " + html.escape(line.strip(), quote=False))
+            found.append("    " + markdown(line.strip()))
         else:
             if found and found[-1].startswith(("* ", "    ")):
                 found.append("")
-            found.append(html.escape(line, quote=False))
+            found.append(markdown(line))
     return "\n".join(found) + "\n"
 
 
@@ -44,10 +55,22 @@ def is_property(node):
     return any(ast.unparse(decorator) in ("property", "cached_property") for decorator in node.decorator_list)
 
 
-def of_class(node):
+def declaration(node, source):
+    """Constructor of a class, or its lines with class attributes: all of the constructor of a dataclass."""
+    begin = next((f for f in node.body if isinstance(f, ast.FunctionDef) and f.name == "__init__"), None)
+    if begin:
+        return signature(node.name, begin, True)
+    lines = source.splitlines()
+    bases = f"({', '.join(map(ast.unparse, node.bases))})" if node.bases else ""
+    attributes = [line for inner in node.body if isinstance(inner, (ast.Assign, ast.AnnAssign))
+                  for line in lines[inner.lineno - 1:inner.end_lineno]]
+    head = [f"@{ast.unparse(decorator)}" for decorator in node.decorator_list]
+    return "\n".join([*head, f"class {node.name}{bases}" + ":" * bool(attributes), *attributes])
+
+
+def of_class(node, source):
     functions = [f for f in node.body if isinstance(f, ast.FunctionDef)]
-    begin = next((f for f in functions if f.name == "__init__"), None)
-    parts = [f"```python\n{signature(node.name, begin, True) if begin else node.name}\n```\n", text_of(node)]
+    parts = [f"```python\n{declaration(node, source)}\n```\n", text_of(node)]
     for function in functions:
         if function.name.startswith("_"):
             continue
@@ -60,12 +83,13 @@ def page(package):
     parts = ["# Python\n", "Classes and functions of the package `sprekk`. [Python](../docs/use/python.md) is an "
              "introduction. The entries of scenes as classes: [entries.pyi](../apps/python/sprekk/entries.pyi).\n"]
     for name, file in public(package):
-        node = next((n for n in ast.parse(file.read_text()).body if getattr(n, "name", None) == name), None)
+        source = file.read_text()
+        node = next((n for n in ast.parse(source).body if getattr(n, "name", None) == name), None)
         if node is None:
             raise ValueError(f"{file}: has no class or function {name}")
         parts.append(f"## {name}\n")
         if isinstance(node, ast.ClassDef):
-            parts += of_class(node)
+            parts += of_class(node, source)
         else:
             parts += [f"```python\n{signature(name, node)}\n```\n", text_of(node)]
     return "\n".join(parts)

@@ -49,7 +49,8 @@ def fit(scene, measured, along, match, parameters):
     match       names of the compared columns
     parameters  {path of an entry: (start, low, high)}, in the unit of the reference
 
-    Returns an Estimate: values, 95 % confidence intervals, correlation, and the fitted `curve`."""
+    Returns an Estimate: values, 95 % confidence intervals and correlation, in the order of `parameters`. It has two more
+    attributes: `parameters` {path: fitted value}, and the fitted `curve`."""
     from . import estimate
     entries, _ = point_entries(scene)
     match = [match] if isinstance(match, str) else list(match)

@@ -8,7 +8,7 @@ from . import _sprekk
 class Results:
     """Output folder of `./sprekk run` or of model.run(output=...).
 
-    status     "completed", "interrupted" or "failed"; `reason` is the error message
+    status     "completed", "running", "interrupted" or "failed"; `reason` is the error message
     steps      pandas.DataFrame with the numbers of each step: time, newton_iterations, cuts, ...
     fractures  pandas.DataFrame with the index (time, fracture set); vectors have a column for each component
     content    results.json as a dict"""
