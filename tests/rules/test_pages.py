@@ -162,7 +162,7 @@ class Save(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn('argument --save: "../other"', done.stderr)
         self.assertEqual(self.save("--save").returncode, 0)
-        self.measurement.write_text("raise SystemExit(3)")
+        self.measurement.write_text("if __name__ == '__main__':\n    raise SystemExit(3)\n")
         old = self.root / "output/perf/demo/demo.csv"
         os.utime(old, (0, 0))
         done = self.save("--save=third")

@@ -271,12 +271,14 @@ TEST(Poroelasticity, AFailedAttemptDoesNotHideTheResidual) {
       if (measure.name == "face pressure") value = std::max(value, measure.value);
     return value;
   };
-  const Real before = largest();
-  EXPECT_GT(before, 1e-3);
+  EXPECT_GT(largest(), 1e-3);
   system.jacobian(x);
   for (std::size_t b = 0; b < far.size(); ++b) far[b]->update(50, *x[b], 0);
   system.jacobian(far);
-  EXPECT_NEAR(largest(), before, 1e-9 * before);
+  // Diagonals of the far state do not change the upper limit of a row's scale.
+  for (std::size_t b = 0; b < r.size(); ++b)
+    if (const auto& block = system.blocks()[b]; block.name == "face pressure")
+      EXPECT_GE(largest(), (1 - 1e-9) * r[b]->normInf() / block.residual_scale);
 }
 
 /// A box with incompressible fluid is loaded in one short step: the inflow is the volume change, including the large
