@@ -52,7 +52,7 @@ def manufactured_solutions():
             conditions = {f"{half} {side}": {"boundary": side, "region": half, "pressure": known[half]} for half in halves for side in [*sides(d - 1), ends[half]]}
             conditions.update({f"fracture {side}": {"boundary": side, "fracture": "fracture", "pressure": known["fracture"]} for side in sides(d - 1)})
             source = f"{last}>0.5 ? ({known['above source']}) : ({known['below source']})"
-            write(f"flow_{name}_{d}d", f"A manufactured solution of flow through rock and along a fracture{' that resists flow across it' if resists else ''}. "
+            write(f"flow_{name}_{d}d", f"A manufactured solution of flow through rock and along a fracture{' with a resistance across it' if resists else ''}. "
                   "See perf/verification/flow_exact.py.",
                   scene(box(d, 4, {"fracture": across(d, d - 1, 0.5)}, halves), {"joint": joint},
                         {"fracture": {"material": "joint", "source": known["fracture source"]}}, conditions,
@@ -75,7 +75,7 @@ def single_fracture():
         parameter, kept = (("T0", "2/(T0(0)+2)"), ("c0", "2*c0(0)/(1+2*c0(0))"))[part]
         content = scene(mesh, {"joint": joint}, {"crack": "joint"}, {"far": {"boundary": "boundary", "pressure": potential(r, kept, along, part)}})
         content["Tables"] = {parameter: {"arguments": [0.0, 1.0], "values": [1.0, 1.0]}}
-        write(f"flow_{name}", f"Flow {what} a fracture in a plane without end, whose pressure is prescribed on the box around it.", content)
+        write(f"flow_{name}", f"Flow {what} a fracture in an infinite plane. The exact pressure is prescribed on the boundary of the box.", content)
 
 
 def patches():
@@ -83,11 +83,11 @@ def patches():
     joints = {"wide": {"initial aperture": 0.5, "residual aperture": 2.0}, "filled": {"initial aperture": 0.5, "tangential permeability": 6.0},
               "tight": {"initial aperture": 0.01, "tangential permeability": 1e-3}}
     linear = "1 + 0.7*x - 0.4*y"
-    write("flow_patch_2d", "A constant gradient of pressure through rock and straight fractures that cross.",
+    write("flow_patch_2d", "A constant pressure gradient in rock with straight, intersecting fractures.",
           scene(make_scenes.mesh_file("flow_patch", *meshes.NETWORK), joints, dict(zip(meshes.NETWORK, joints)), {"all": {"boundary": "boundary", "pressure": linear}}))
     fractures = {name: across(3, axis, at) for axis, (name, at) in enumerate((("x", 0.5), ("y", 0.25), ("z", 0.5)))}
     conditions = {side: {"boundary": side, "pressure": linear + " + 0.3*z"} for side in sides(3)}
-    write("flow_patch_3d", "A constant gradient of pressure through turned rock and plane fractures that cross.",
+    write("flow_patch_3d", "A constant pressure gradient in a rotated block of rock with plane, intersecting fractures.",
           scene(box(3, 4, fractures, rotation=30.0, **{"rotation axis": [1.0, 1.0, 0.0]}), joints, dict(zip(fractures, joints)), conditions))
 
 
@@ -123,7 +123,7 @@ def wells():
         well = {"points": middle, "radius": 0.001, "rate": "-2*pi*a(0)^2"}
         content = scene(box(d, 9, {}), {}, {}, {side: {"boundary": side, "pressure": pressure} for side in sides(2)}, fluid={"Wells": {"well": well}})
         content["Tables"] = {"a": {"arguments": [0.0, 1.0], "values": [1.0, 1.0]}}
-        write(f"flow_well_{d}d", "Flow to a well in a plane without end, whose pressure is prescribed on the sides (Thiem 1906).", content)
+        write(f"flow_well_{d}d", "Flow to a well in an infinite plane. The exact pressure is prescribed on the sides (Thiem 1906).", content)
 
 
 def others():

@@ -18,10 +18,10 @@ def sliding_fractures():
     joint = {"volumetric heat capacity": heat["of filling"], "friction coefficient": float(manufactured.FRICTION), "tangential stiffness": float(manufactured.STIFFNESS),
              "dilation angle": math.degrees(math.atan(heat["dilation"])), "initial aperture": 1.0, "thermal conductivity": heat["in fracture"]}
     for d in (2, 3):
-        for name, carried, what in (("carried", 1, "that carries heat"), ("conducted", 0, "that carries no heat")):
+        for name, carried, heat_transport in (("carried", 1, "with"), ("conducted", 0, "without")):
             warm = {"initial temperature": heat["start"], "fluid heat capacity": float(carried),
                     "fluid thermal expansion": heat["of fluid expansion"], "heat of friction": True}
-            make_scenes.write(f"manufactured_heat_{name}_{d}d", f"A manufactured solution of rock and of a fracture that slides and opens, with a fluid {what}. "
+            make_scenes.write(f"manufactured_heat_{name}_{d}d", f"A manufactured solution of rock with a fracture that slides and opens, {heat_transport} heat transport by the fluid. "
                               "See perf/verification/heat_exact.py.",
                               poro_scenes.halved_block(d, manufactured.warmed(d, carried), rock, joint, {"viscosity": 0.5}, warm),
                               "heat_scenes.py", {"end": 1.0, "steps": 2})
@@ -50,7 +50,7 @@ def sliding_in_time():
         along = [1.0] if d == 2 else [0.8, 0.6]
         shear = known.friction * known.N
         stress = [0.0, -known.N, 0.0, shear] if d == 2 else [0.0, 0.0, -known.N, 0.0, 0.6 * shear, 0.8 * shear]
-        make_scenes.write(f"heat_time_{d}d", "A fracture that slides, opens and becomes warmer by its friction. See perf/verification/heat_exact.py.",
+        make_scenes.write(f"heat_time_{d}d", "A fracture that slides, opens and is heated by friction. See perf/verification/heat_exact.py.",
                           {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock", "initial stress": stress},
                            "Fractures": {"fracture": {"material": "joint", "source": f"{1 - known.fluid_expansion * known.rise / known.c!r}*{opens}"}},
                            "Flow": {"viscosity": 1.0, "source": fluid},

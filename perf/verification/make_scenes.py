@@ -70,8 +70,8 @@ def crack_displacement(mode, factor, nu, x="x", y="y"):
 def cracks():
     rock = {"shear modulus": 1.0, "Poisson's ratio": 0.25}
     meshes.uniform_crack(FOLDER, 0.4).rename(FOLDER / "sneddon.msh")
-    write("sneddon", "A crack under the pressure 1e-3, open, in a box on whose boundary the displacement of the infinite plane is "
-          "prescribed (Sneddon 1946).",
+    write("sneddon", "An open crack under the pressure 1e-3 in a box. The displacement of the infinite plane is prescribed on the "
+          "boundary (Sneddon 1946).",
           scene(mesh_file("sneddon", "crack", normal=[0.0, 1.0]), rock, {"friction coefficient": 0.5}, ["crack"],
                 around(crack_displacement(1, 0.5e-3, 0.25)), fluid={"fluid pressure": 1e-3}))
     write("sneddon_shear", "A crack under the initial normal stress -1e-3 and shear stress 1.5e-3 that slides with "
@@ -106,8 +106,8 @@ def penny_displacement(p, nu):
 
 def penny():
     meshes.penny(FOLDER, 1, 0.25, 0.5).rename(FOLDER / "penny.msh")
-    write("penny", "A crack in the form of a disc under the pressure 1e-3, open, in a box on whose boundary the "
-          "displacement of the infinite body is prescribed (Sneddon 1946).",
+    write("penny", "An open penny-shaped crack under the pressure 1e-3 in a box. The displacement of the infinite body is "
+          "prescribed on the boundary (Sneddon 1946).",
           scene(mesh_file("penny", "crack", normal=[0.0, 0.0, 1.0]), {"shear modulus": 1.0, "Poisson's ratio": 0.25},
                 {"friction coefficient": 0.5}, ["crack"], around(penny_displacement(1e-3, 0.25)), fluid={"fluid pressure": 1e-3}))
 
@@ -117,7 +117,7 @@ def wavy():
     full = math.pi / 0.75 * 0.01
     sides = {side: {"boundary": side, "displacement": ["0", "free"]} for side in ("west", "east")}
     ends = {"below": {"boundary": "south", "displacement": ["free", "0"]}, "above": {"boundary": "north", "traction": [0.0, -0.4 * full]}}
-    write("wavy", "Half a wave of a wavy fracture pressed together: contact over a part of it that is known (Westergaard 1939).",
+    write("wavy", "Half a wavelength of a wavy fracture under compression. The size of the contact zone is known (Westergaard 1939).",
           scene(mesh_file("wavy", "fracture", normal=[0.0, 1.0]), {"shear modulus": 1.0, "Poisson's ratio": 0.25},
                 {"friction coefficient": 0.5, "initial gap": "-0.01*(1-cos(2*pi*x))"}, ["fracture"], {**sides, **ends}))
 
@@ -129,8 +129,8 @@ def t_junction():
                     {"far": {"boundary": "boundary", "displacement": [0.0, 0.0]}}, {"initial stress": [0.0, -100e6, 0.0, 0.0]})
     content["Mesh file"]["fractures"]["horizontal"]["reference normal"] = [0.0, 1.0]
     content["Fractures"]["vertical"]["fluid pressure"] = 100e6
-    write("t_junction", "A fracture under a fluid pressure of 100 MPa ends on one that slides, in rock under 100 MPa "
-          "(Phan et al. 2003). The box is so large that its boundary does not matter.", content)
+    write("t_junction", "A fracture under a fluid pressure of 100 MPa ends at a sliding fracture, in rock under a compression of "
+          "100 MPa (Phan et al. 2003). The box is large enough for its boundary to have a negligible effect.", content)
 
 
 def manufactured_solutions():

@@ -39,14 +39,14 @@ def columns():
               {"mesh": {"cells": cells}, "rock": rock(known.rock)}, {**rollers(d, *sides[:-1]), "top": load}, {"end": 0.1 / known.rock.c, "steps": 25})
         middle = {"middle": {"lower corner": [0.0] * (d - 1) + [0.4], "upper corner": [0.2] * (d - 1) + [0.6]}}
         soft = poro_exact.Rock(known.rock.lam / 10, known.rock.G / 10, 0.0, known.rock.mobility / 100)
-        write(f"layers_{d}d", "A column with a soft, tight layer, loaded so quickly that nothing drains.", box,
+        write(f"layers_{d}d", "A column with a soft layer of low permeability under an undrained load.", box,
               {"mesh": {"cells": cells, "regions": middle}, "rock": rock(known.rock), "soft": rock(soft)}, {**rollers(d, *sides[:-1]), "top": load},
               {"end": 1e-6, "steps": 1})
 
 
 def plate():
     known = poro_exact.PLATE
-    write("mandel", "A quarter of a plate that rigid plates press together (Mandel 1953): the way of the plate is prescribed, from a step of almost nothing on.",
+    write("mandel", "A quarter of a plate between rigid plates (Mandel 1953). The displacement of the upper plate is prescribed; the first step is very short.",
           [known.a, known.b], {"mesh": {"cells": [20, 2]}, "rock": rock(known.rock)},
           {**rollers(2, "west", "south"), "drained": {"boundary": "east", "pressure": 0.0}, "plate": {"boundary": "north", "displacement": ["free", "plate(t)"]}},
           {"schedule": list(poro_exact.mandel_times(25.0))}, {"plate": dict(zip(("arguments", "values"), map(list, known.way(poro_exact.mandel_times(25.0)))))})
@@ -110,7 +110,7 @@ def opened_fractures():
     rock = unit_rock(1.0, compressibility_of_pores=growth, Biot_coefficient=alpha)
     joint = {"friction coefficient": 0.5, "initial gap": -0.1, "initial aperture": 1.0}
     for d in (2, 3):
-        store(f"manufactured_opening_{d}d", "A manufactured solution of rock and of a fracture that a fluid opens. See perf/verification/poro_exact.py.",
+        store(f"manufactured_opening_{d}d", "A manufactured solution of rock with a fracture opened by fluid pressure. See perf/verification/poro_exact.py.",
               halved_block(d, manufactured.opened(d), rock, joint, {"viscosity": 0.5}), {"end": 1.0, "steps": 2})
 
 
@@ -146,9 +146,10 @@ def joined_block(name, known, d, comment):
 def joined_blocks():
     for d in (2, 3):
         joined_block("block", poro_exact.CONFINED, d,
-                     "A block that is sheared and pressed together, in whose fracture the pressure rises until it slides and opens.")
+                     "A block with a fracture under compression and shear. The fluid pressure rises until the fracture slides and opens.")
         joined_block("onset", poro_exact.STRESSED, d,
-                     "A fracture under 60 MPa of compression and 20 MPa of shear, in which the pressure rises until it slides and opens.")
+                     "A fracture under a compression of 60 MPa and a shear stress of 20 MPa. The fluid pressure rises until the "
+                     "fracture slides and opens.")
 
 
 def filled_cracks():
@@ -159,10 +160,10 @@ def filled_cracks():
     displacements = {2: make_scenes.crack_displacement(1, 0.5 * poro_exact.FILLED, 0.25),
                      3: make_scenes.penny_displacement(poro_exact.FILLED, 0.25)}
     joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -1e-4, "initial aperture": 1e-4}
-    for d, mesh, name in ((2, "sneddon", "A crack"), (3, "penny", "A crack in the form of a disc")):
+    for d, mesh, name in ((2, "sneddon", "A crack"), (3, "penny", "A penny-shaped crack")):
         well = {"points": [0.0, 0.0] if d == 2 else [0.0, 0.0, -0.1, 0.0, 0.0, 0.1], "radius": 1e-6,
                 "rate": f"t<0.75 ? {2 * poro_exact.filling(d, 0.25)!r} : 0"}
-        store(f"crack_volume_{d}d", f"{name}, into which a well puts a volume of fluid that nothing else takes up (Sneddon 1946).",
+        store(f"crack_volume_{d}d", f"{name} that stores all of the fluid injected by a well (Sneddon 1946).",
               {**make_scenes.mesh_file(mesh, "crack", normal=[0.0] * (d - 1) + [1.0]),
                "Materials": {"rock": unit_rock(1e-22, Biot_coefficient=0.0, compressibility_of_pores=0.0), "joint": joint},
                "Bulk": {"material": "rock"}, "Fractures": {"crack": {"material": "joint"}},
@@ -176,7 +177,7 @@ ALPHA, STORED = 0.8, 0.5
 def rock_in_time():
     """Writes the scene of poro_exact.InTime, with errors of the time steps only."""
     exact = {"displacement": ["sin(2*t)*x", "sin(2*t)*y/2"], "pressure": "sin(3*t)*(1+x-y/2)"}
-    store("poro_time_rock", "Pressure and strain of rock, linear in space, that change with time. See perf/verification/poro_exact.py.",
+    store("poro_time_rock", "Pressure and strain of rock that vary in time and are linear in space. See perf/verification/poro_exact.py.",
           {**flow_scenes.box(2, 4, {}, cell="quadrilateral"),
            "Materials": {"rock": unit_rock(0.01, Biot_coefficient=ALPHA, compressibility_of_pores=STORED)},
            "Bulk": {"material": "rock", "body force": [f"{ALPHA}*sin(3*t)", f"-{ALPHA / 2}*sin(3*t)"]},
@@ -196,7 +197,7 @@ def fracture_in_time():
     mesh["Mesh"]["cells"] = [2, 2, 4]
     rock = unit_rock(0.01, Biot_coefficient=ALPHA, compressibility_of_pores=STORED, porosity=0.1)
     joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -0.01, "initial aperture": 0.05}
-    store("poro_time_fracture", "A fracture that opens in time, in a closed block that sources fill. See perf/verification/poro_exact.py.",
+    store("poro_time_fracture", "A fracture that opens over time, in a closed block with fluid sources. See perf/verification/poro_exact.py.",
           {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock"},
            "Fractures": {"fracture": {"material": "joint", "source": inside}},
            "Flow": {"viscosity": 1.0, "compressibility": c, "source": source},
