@@ -63,13 +63,13 @@ def made(network):
     import mesher
     from plan import Plan
     from sizes import Sizes
-    with doing(f"finding where {len(network.fractures)} fractures meet"):
+    with doing(f"intersecting {len(network.fractures)} fractures"):
         plan = Plan(network)
-    with doing(f"looking for small angles and distances among {len(plan.edges)} edges of fractures"):
+    with doing(f"checking angles and distances of {len(plan.edges)} edges of fractures"):
         checks.check(plan)
-    with doing(f"finding how short cells must be at {len(plan.edges)} edges of fractures"):
+    with doing(f"computing cell sizes at {len(plan.edges)} edges of fractures"):
         sizes = Sizes(plan)
-    with doing(f"making a mesh of about {sum(sizes.expected_cells().values()):.1g} cells"):
+    with doing(f"generating a mesh of about {sum(sizes.expected_cells().values()):.1g} cells"):
         return plan, sizes, mesher.make_mesh(plan, sizes)
 
 
@@ -82,7 +82,7 @@ def made_of(text, network):
     while True:
         try:
             plan, *rest = made(network)
-            plan.repairs[:0] = [f"drawn again{f' {times} times' if times > 1 else ''}, for it could not be meshed with others: {name}"
+            plan.repairs[:0] = [f"drawn again{f' {times} times' if times > 1 else ''} due to a conflict with other fractures: {name}"
                                 for name, times in again.items()]
             return plan, *rest
         except NetworkError as error:
@@ -145,7 +145,7 @@ def main(words=None):
         if isinstance(error, OSError):
             error = NetworkError(f"{error.filename or options.output}: {error.strerror or error}")
         elif not isinstance(error, NetworkError):
-            error = NetworkError(f"no mesh could be made: {type(error).__name__}: {error}")
+            error = NetworkError(f"mesh generation failed: {type(error).__name__}: {error}")
         reason = in_words(error, options.scene)
         print(f"sprekk: {reason}", file=sys.stderr)
         if options.run:

@@ -23,8 +23,8 @@ def near_pairs(low, high, reach):
         second.append(j)
         n += len(j)
         if n > MOST_PAIRS:
-            raise NetworkError(f"the network is too dense: of {len(low)} edges more than {MOST_PAIRS:g} pairs may be closer than {reach:.3g} m; "
-                               f"leave fractures out, or ask for smaller cells (\"relative size\", \"size\")")
+            raise NetworkError(f"the network is too dense: more than {MOST_PAIRS:g} pairs of its {len(low)} edges may be closer than "
+                               f"{reach:.3g} m; remove fractures, or choose smaller cells (\"relative size\", \"size\")")
     first, second = (order[np.concatenate(k).astype(int)] if k else np.array([], int) for k in (first, second))
     return np.minimum(first, second), np.maximum(first, second)
 
@@ -108,7 +108,7 @@ def cut(segments, parents, tolerance):
     s, t, gap = closest(segments[i], segments[j])
     cross = np.flatnonzero((gap <= tolerance) & (s > 0) & (s < 1) & (t > 0) & (t < 1))
     if len(cross) > MOST_CROSSINGS:
-        raise NetworkError(f"the network is too dense: fractures cross in {len(cross)} points, at most {MOST_CROSSINGS} are meshed")
+        raise NetworkError(f"the network is too dense: fractures cross in {len(cross)} points, at most {MOST_CROSSINGS} are allowed")
     n = len(points[0])
     for k in cross:
         a, b = segments[i[k]], segments[j[k]]

@@ -138,9 +138,9 @@ def lying_on(plan):
         side = next((plan.owners[k] for k in of if plan.owners[k].kind == "boundary"), None)
         if len(fractures) > 1:
             pair = fractures[0].name, fractures[1].name
-            yield pair, f"{pair[0]} and {pair[1]} lie on each other; leave one out or make them one"
+            yield pair, f"{pair[0]} and {pair[1]} overlap; remove one, or merge them"
         elif fractures and side:
-            advice = "; \"layers\" of its set chooses others" if " of the layer " in fractures[0].name else ""
+            advice = "; \"layers\" of its set selects other layers" if " of the layer " in fractures[0].name else ""
             yield ((fractures[0].name, side.name),
                    f"{fractures[0].name}: lies on {side.name}; a fracture needs rock on both sides{advice}")
 

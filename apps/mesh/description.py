@@ -100,7 +100,7 @@ class Network:
             table = Table(exchange.read(path, dim, layers, self.left_out if self.leaves_out else None, "unit" in content))
         else:
             if layers:
-                raise NetworkError(f"{path}: has no layers, \"layers\" of its set names some; files of GDAL have them", [path])
+                raise NetworkError(f"{path}: has no layers, but its set has \"layers\"; only formats of GDAL have layers", [path])
             kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else None)
             if kind is None:
                 kind = "points" if of_domain and has_points(path, dim) else of_domain
@@ -139,7 +139,7 @@ class Network:
                                      f"{name} {one}", "ellipses"))
             number = len(found) + content.get("random", {}).get("number", 0)
             if number > MOST_FRACTURES:
-                raise NetworkError(f"{path}: brings the network to {number} {kind}s, at most {MOST_FRACTURES} are meshed")
+                raise NetworkError(f"{path}: increases the network to {number} {kind}s, at most {MOST_FRACTURES} are allowed")
             if "random" in content:
                 names = [f'{kind} {k + 1} at random of "{name}"' for k in range(content["random"]["number"])]
                 again = {k: self.again[one] for k, one in enumerate(names) if one in self.again}
@@ -158,19 +158,19 @@ class Network:
                 path = self.entries[section][name]["file"]
                 said, known = (" to ".join(at(corner, self.domain.size) for corner in box)
                                for box in (table.box, (self.domain.low, self.domain.high)))
-                raise NetworkError(f"{as_known(path)}: tells of a domain from {said}, the scene's is {known}; leave one out", [as_known(path)])
+                raise NetworkError(f"{as_known(path)}: has a domain from {said}, the scene has {known}; remove one", [as_known(path)])
 
     def check_names(self):
         """Checks that the groups of the mesh have different names, valid in files of gmsh."""
         sides = {side.group for side in self.domain.sides}
         for name in (*sides, *self.entries["fractures"], *self.entries["regions"]):
             if '"' in name or not name.isprintable():
-                raise NetworkError(f"{self.place('...')}: the name {name!r} has a quotation mark or what cannot be printed; choose another")
+                raise NetworkError(f"{self.place('...')}: the name {name!r} contains a quotation mark or an unprintable character; choose another")
         for name in self.entries["fractures"]:
             if name in sides:
                 raise NetworkError(f"{self.place('fractures > ' + name)}: has the name of a side of the domain; choose another")
         if "bulk" in self.entries["regions"]:
-            raise NetworkError(f"{self.place('regions > bulk')}: is the name of the rest of the rock; choose another")
+            raise NetworkError(f"{self.place('regions > bulk')}: is the name of the remaining rock; choose another")
 
     def check_singles(self):
         """Checks the names of single fractures.
@@ -180,14 +180,14 @@ class Network:
         for feature in self.fractures:
             one, name = first.setdefault(feature.single, feature), feature.single
             if '"' in name or not name.isprintable():
-                errors.lines.append(f"{feature.name}: the name {name!r} has a quotation mark or what cannot be printed; choose another")
+                errors.lines.append(f"{feature.name}: the name {name!r} contains a quotation mark or an unprintable character; choose another")
             elif one.group != feature.group:
                 errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another set; choose another")
             elif one.source != feature.source:
                 errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name} of another file or "
                                     "section; choose another")
             elif one.properties != feature.properties:
-                errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name}, and other values in further columns")
+                errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name}, but different values in additional columns")
         errors.throw(self.files)
 
     def check_dimensions(self):

@@ -56,7 +56,7 @@ class Body:
         self.low, self.high = points.min(axis=0), points.max(axis=0)
         largest = points.ravel()[np.abs(points).argmax()]
         if abs(largest) > MOST:
-            raise NetworkError(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are meshed")
+            raise NetworkError(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are allowed")
         self.size = np.linalg.norm(self.high - self.low)
         if self.dim == 2:
             self.corners, self.shape = sides, Polygon(sides)
@@ -77,7 +77,7 @@ class Body:
                 edge = tuple(sorted(tuple(np.round(x / self.size, 8) + 0.0) for x in (a, b)))
                 count[edge] = count.get(edge, 0) + 1
         if any(n != 2 for n in count.values()):
-            raise NetworkError(f"{self.place}: the faces are not closed: each edge must be that of two faces, from corner to corner")
+            raise NetworkError(f"{self.place}: the faces are not closed: each edge must belong to two faces, from corner to corner")
         self.surfaces = [Surface.whole(side) for side in self.sides]
         self.volume = 0.0
         for s in self.surfaces:

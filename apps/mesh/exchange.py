@@ -40,7 +40,7 @@ def library():
     try:
         from osgeo import gdal, ogr, osr
     except ImportError:
-        raise NetworkError("reading this needs GDAL for Python: apt-get install python3-gdal") from None
+        raise NetworkError("this format requires GDAL for Python: apt-get install python3-gdal") from None
     gdal.UseExceptions()
     ogr.UseExceptions()
     osr.UseExceptions()
@@ -54,8 +54,8 @@ def reason(error, path):
     if at_line:
         return f"line {at_line[1]} is damaged, or the file ends there"
     if "not recognized as" in text:
-        return f"is no {DRIVERS[Path(path).suffix.lower()]} file"
-    return re.sub(r"\S+\.(?:c|cpp|h), ?\d+: ", "", text) or "it is damaged, GDAL gives no reason"
+        return f"is not in the format {DRIVERS[Path(path).suffix.lower()]}"
+    return re.sub(r"\S+\.(?:c|cpp|h), ?\d+: ", "", text) or "is damaged, GDAL reports no reason"
 
 
 def geojson(path):
@@ -63,12 +63,12 @@ def geojson(path):
     try:
         members = json.loads(Path(path).read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError:
-        raise NetworkError(f"{path}: cannot be read: is no text in UTF-8", [path]) from None
+        raise NetworkError(f"{path}: cannot be read: is not UTF-8 text", [path]) from None
     except ValueError as error:
-        raise NetworkError(f"{path}: cannot be read: is no JSON: {error}", [path]) from None
+        raise NetworkError(f"{path}: cannot be read: is not valid JSON: {error}", [path]) from None
     if not isinstance(members, dict) or not isinstance(members.get("features", []), list):
         raise NetworkError(
-            f"{path}: cannot be read: is no GeoJSON, expected an object with a list of \"features\"", [path]
+            f"{path}: cannot be read: is not GeoJSON, expected an object with a list of \"features\"", [path]
         )
     errors = []
     for k, feature in enumerate(members.get("features", [members]), 1):
@@ -193,7 +193,7 @@ def corners(part, is_polygon, dim, place, errors, unused):
         errors.append(f"{place}: is a polygon; in 2D fractures are lines")
         return None
     if is_polygon and part.GetGeometryCount() > 1:
-        errors.append(f"{place}: is a polygon with holes; divide it into polygons without")
+        errors.append(f"{place}: is a polygon with holes; divide it into polygons without holes")
         return None
     ring = part.GetGeometryRef(0) if is_polygon else part
     points = np.array([ring.GetPoint(k) for k in range(ring.GetPointCount())]).reshape(-1, 3)
@@ -202,7 +202,7 @@ def corners(part, is_polygon, dim, place, errors, unused):
         return None
     if abs(points).max(initial=0) > MOST:
         largest = points.ravel()[abs(points).argmax()]
-        errors.append(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are meshed")
+        errors.append(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are allowed")
         return None
     if dim == 2:
         points = points[:, :2]
@@ -216,7 +216,7 @@ def corners(part, is_polygon, dim, place, errors, unused):
         return None
     keep = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))  # drawings may repeat points
     if keep.sum() < dim:
-        unused.append(f"{place}: has {keep.sum()} different points, needs {dim} at least")
+        unused.append(f"{place}: has {keep.sum()} different points, needs at least {dim}")
         return None
     return points[keep]
 

@@ -6,7 +6,7 @@ from tables import Row, Table, complete, numbers, read_lines
 METRES = ("m", "meter", "meters", "metre", "metres")
 ENTRIES = {"format": ("ascii",), "length_unit": METRES, "xaxis": ("east",)}  # allowed values in the header
 COUNTS = {"FRACTURE": "No_Fractures", "TESSFRACTURE": "No_TessFractures"}
-HEAD = {"FRACTURE": "the number of a fracture and that of its corners",
+HEAD = {"FRACTURE": "the number of a fracture and the number of its corners",
         "TESSFRACTURE": "the numbers of a fracture, its nodes, its facets and its set"}
 
 
@@ -53,7 +53,7 @@ def points(section, k, number, n, kind, table):
     first = 0 if found and found[0][:1] == ["0"] else 1
     counted = [words[:1] == [str(first + row)] and len(words) > 3 for row, words in enumerate(found)]
     if len(found) < n or n < 3 or not all(counted):
-        section.refuse(k, f"fracture {number} has {n} {kind}; their lines, number x y z, do not follow")
+        section.refuse(k, f"fracture {number} has {n} {kind}, expected at least 3, and a line with number x y z for each")
     return [numbers(words[1:4], section.place(begin + row), table, range(2, 5)) for row, words in enumerate(found)]
 
 
@@ -89,7 +89,7 @@ def read_section(section, table, first):
     for k, words in section.heads():
         number = words[0]
         if number in first:
-            section.refuse(k, f"fracture {number} is in line {first[number] + 1}, too; each needs a number of its own")
+            section.refuse(k, f"fracture {number} is also in line {first[number] + 1}; each fracture needs its own number")
         first[number] = k
         for shape in (polygon if section.name == "FRACTURE" else facets)(section, k, words, table):
             if all(x is not None for x in shape):

@@ -79,8 +79,8 @@ class Model:
         owners = {face.tag: self.plan.owners[face.owner].name for face in self.faces}
         names = [owners[int(tag)] for line in said for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners]
         where = f", at {' and '.join(dict.fromkeys(names))}" if names else ""
-        return NetworkError(f"gmsh could not make the mesh{where}: {said[0]}; a larger \"tolerance\" joins what is too close, smaller sizes "
-                            "resolve it", features=[tuple(names)] if names else [])
+        return NetworkError(f"gmsh could not generate the mesh{where}: {said[0]}; increase \"tolerance\" to join close fractures, or "
+                            "choose smaller sizes", features=[tuple(names)] if names else [])
 
     def mesh(self, sizes):
         dim = self.plan.dim
@@ -96,7 +96,7 @@ class Model:
 
         cells = elements(dim)
         if not len(cells):
-            raise NetworkError("gmsh made no cells; a larger \"tolerance\" joins what is too close")
+            raise NetworkError("gmsh generated no cells; increase \"tolerance\" to join close fractures")
         owned = []
         if dim == 2:
             owned = [(foremost(self.plan, of), elements(1, self.line[edge])) for edge, of in self.plan.edges.items()]

@@ -57,7 +57,7 @@ class Plan:
             names = tuple(sorted(names or {self.owners[k].name for k in one}))
             if names not in told:
                 told.add(names)
-                self.repairs.append(f"joined what was {gap:.3g} m apart: " + " and ".join(names))
+                self.repairs.append(f"closed a gap of {gap:.3g} m: " + " and ".join(names))
 
     def straighten_sides(self):
         """Moves points joined to one side of the domain onto this side, in 2D. Corners are on two sides and stay."""
@@ -123,7 +123,7 @@ class Plan:
         left, errors = {fracture.group for fracture in self.network.fractures}, Errors()
         for name in self.network.entries["fractures"]:
             if name not in left:
-                errors.lines.append(f"{self.network.place('fractures > ' + name)}: has no fracture in the domain that can be used")
+                errors.lines.append(f"{self.network.place('fractures > ' + name)}: has no usable fracture in the domain")
         errors.throw()
 
     def thin(self, line):
@@ -144,8 +144,8 @@ class Plan:
         least = {"fracture": self.network.minimum_distance, "constraint": self.tolerance}.get(line.kind, 0)
         whole = np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum()
         if whole < least:
-            unusable(line, f"is {whole:.3g} m long, shorter than the \"minimum distance\", {least:.3g} m; make it smaller, or leave "
-                           "the line out")
+            unusable(line, f"is {whole:.3g} m long, shorter than the \"minimum distance\", {least:.3g} m; reduce it, or "
+                           "remove the line")
         if max(length, default=0) < least:
             unusable(line, "lies outside of the domain")
         for x in length:
@@ -213,7 +213,7 @@ class Plan:
             moved, told = moved_onto(surface, others, self.network.tolerance)
             for distance, other in told:
                 if distance > 1e-9 * self.network.domain.size:
-                    self.repairs.append(f"joined what was {distance:.3g} m apart: {surface.feature.name} and {other.feature.name}")
+                    self.repairs.append(f"closed a gap of {distance:.3g} m: {surface.feature.name} and {other.feature.name}")
             found.append(moved if told else surface)
         return found
 
@@ -225,7 +225,7 @@ class Plan:
         are_fractures = one.feature.kind == other.feature.kind == "fracture"
         if are_level(one, other, tolerance):
             if are_fractures and overlap(one, other, tolerance):
-                raise NetworkError(f"{one.feature.name} and {other.feature.name} lie on each other; leave one out or make them one",
+                raise NetworkError(f"{one.feature.name} and {other.feature.name} overlap; remove one, or merge them",
                                    features=[(one.feature.name, other.feature.name)])
             return []
         if np.linalg.norm(np.cross(one.plane.normal, other.plane.normal)) < 1e-8:
@@ -235,7 +235,7 @@ class Plan:
             check_angles(one, other, found, self.network.minimum_angle)
         moved = [h for a, b in ((one, other), (other, one)) for x in found for h in abs(b.plane.height(np.array(x)))]
         if max(moved, default=0) > 1e-9 * self.network.domain.size:
-            self.repairs.append(f"joined what was {max(moved):.3g} m apart: {one.feature.name} and {other.feature.name}")
+            self.repairs.append(f"closed a gap of {max(moved):.3g} m: {one.feature.name} and {other.feature.name}")
         return found
 
     def faces(self):

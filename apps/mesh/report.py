@@ -49,7 +49,7 @@ def of_sets(mesh, plan, sizes):
         found[name] = {"fractures": len({plan.owners[k].single for k in owners}),
                        "length" if plan.dim == 2 else "area": float(measure(mesh.points, faces).sum()), "faces": len(faces),
                        "median edge": float(np.median(edges)), "shortest edge": float(edges.min()),
-                       "median size asked for": float(np.median([sizes.of_owner[k] for k in owners]))}
+                       "median target size": float(np.median([sizes.of_owner[k] for k in owners]))}
     return found
 
 
@@ -81,7 +81,7 @@ def as_text(report):
              f"gamma of cells: least {g['min']:.3g}, median {g['median']:.3g}"]
     for name, s in report["sets"].items():
         lines.append(f"  {name}: {s['fractures']} fractures, {what} {s[what]:.6g}, {s['faces']} faces; edges: median {s['median edge']:.3g} m, "
-                     f"shortest {s['shortest edge']:.3g} m, asked for {s['median size asked for']:.3g} m, less towards tips and in gaps")
+                     f"shortest {s['shortest edge']:.3g} m, target {s['median target size']:.3g} m, smaller near tips and in gaps")
     shown = report["repairs"][:10]
     lines += [f"  {line}" for line in shown]
     if len(shown) < len(report["repairs"]):

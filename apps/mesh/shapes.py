@@ -24,8 +24,8 @@ class Unusable(NetworkError):
     """Error of a fracture that a large map may contain: outside of the domain, too short, without geometry."""
 
 
-HINT = ("\"unusable fractures\" = \"left out\" in the section network leaves fractures out that are outside of the domain, "
-        "too short or without geometry, and lists them; \"layers\" of a set chooses those of a drawing")
+HINT = ("\"unusable fractures\" = \"left out\" in the section network omits and lists fractures that are outside of the "
+        "domain, too short or without geometry; \"layers\" of a set selects layers of a drawing")
 
 
 class Errors:
@@ -150,20 +150,20 @@ def ellipse(centre, radii, strike, dip, rake, n=32):
 def check_line(line, tolerance):
     """Raises an error for a polyline without length or with a self-intersection."""
     if not np.isfinite(line.points).all():
-        refuse(line, "has a coordinate that is no finite number")
+        refuse(line, "has a coordinate that is not a finite number")
     length = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
     if length.min() <= tolerance:
-        unusable(line, f"has no length: its ends are {length.min():.3g} m apart, the \"tolerance\" is {tolerance:.3g} m; make "
-                       "it smaller, or leave the line out")
+        unusable(line, f"has no length: its ends are {length.min():.3g} m apart, the \"tolerance\" is {tolerance:.3g} m; reduce "
+                       "it, or remove the line")
     if not LineString(line.points).is_simple:
-        refuse(line, "crosses itself; make it two fractures")
+        refuse(line, "crosses itself; divide it into two fractures")
 
 
 def check_polygon(polygon, tolerance):
     """Raises an error for a polygon without area, not plane, or with a self-intersection, in 3D."""
     points = polygon.points
     if not np.isfinite(points).all():
-        refuse(polygon, "has a coordinate that is no finite number")
+        refuse(polygon, "has a coordinate that is not a finite number")
     if len(points) < 3:
         refuse(polygon, f"has {len(points)} corners, needs at least 3")
     edge = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)

@@ -80,7 +80,7 @@ class Sizes:
         cells, most = self.expected_cells(), self.network.most_cells
         n, entry = sum(cells.values()), max(cells, key=cells.get)
         if n > most:
-            raise NetworkError(f"Sprekk > Mesh file > network: sizes ask for about {n:.2g} cells, {cells[entry] / n:.0%} of them by "
+            raise NetworkError(f"Sprekk > Mesh file > network: sizes require about {n:.2g} cells, {cells[entry] / n:.0%} of them due to "
                                f"\"{entry}\"; \"most cells\" is {most:g}")
 
     def add(self, points, sizes):

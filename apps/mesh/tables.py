@@ -41,13 +41,13 @@ def numbers(words, place, table, columns):
         try:
             found.append(number(word))
         except ValueError:
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no number")
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is not a number")
             return None
         if not math.isfinite(found[-1]):
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is no finite number")
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is not a finite number")
             return None
         if abs(found[-1]) > MOST:
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is beyond {MOST:g}, the largest allowed")
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} exceeds {MOST:g}, the largest allowed value")
             return None
     return np.array(found)
 
@@ -72,13 +72,13 @@ def read_lines(path):
     try:
         mode = os.stat(path).st_mode
         if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # open() reports folders
-            refuse("is no regular file, but a pipe, a socket or a device")
+            refuse("is not a regular file, but a pipe, a socket or a device")
         with open(path, encoding="utf-8-sig") as file:
             text = file.read(MOST_CHARACTERS + 1)
     except (OSError, UnicodeDecodeError) as error:
-        refuse(getattr(error, "strerror", None) or "is no text in UTF-8")
+        refuse(getattr(error, "strerror", None) or "is not UTF-8 text")
     if len(text) > MOST_CHARACTERS:
-        refuse(f"has more than {MOST_CHARACTERS:g} characters; divide it into several sets, or leave fractures out")
+        refuse(f"has more than {MOST_CHARACTERS:g} characters; divide it into several sets, or remove fractures")
     return text.splitlines()
 
 
@@ -166,7 +166,7 @@ class TitledColumns(Columns):
         if kind == "points":
             self.named = [one for one in self.named if one[1].lower() != "z"]
             if self.number is None:
-                self.refuse(f"the titles of points lack one of {', '.join(NUMBER)}: the points of one number are a line")
+                self.refuse(f"the titles of points lack one of {', '.join(NUMBER)}: points with the same number form a line")
 
     def refuse(self, why):
         raise NetworkError(f"{self.path}: line {self.line}: {why}", [self.path])
@@ -189,10 +189,10 @@ class TitledColumns(Columns):
         if missing:
             listed = ", ".join(missing[:9]) + (" and others" if len(missing) > 9 else "")
             order = ["id", *needed] if self.kind in ("lines", "points") else SHAPE[self.kind]
-            meant = next((f"; these are titles of {kind}, to be named by \"format\"" for kind, titles in SHAPE.items()
+            meant = next((f"; these are titles of {kind}, which \"format\" must name" for kind, titles in SHAPE.items()
                           if kind != "points" and set(titles) <= set(self.titles)), "")
-            self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order where titles name "
-                        f"all of them, and without titles are {','.join(order)}"
+            self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order if titles name "
+                        f"all of them; without titles they are {','.join(order)}"
                         f"{',...' if self.kind == 'polygons' else ''}")
         return needed
 
@@ -236,7 +236,7 @@ def points_row(x, place, table, number):
     if number:
         table.add(place, x[None], number)
     else:
-        table.errors.append(f"{place}: has no number of a line, to which this point belongs")
+        table.errors.append(f"{place}: lacks the number of the line to which this point belongs")
 
 
 ROWS = {"points": points_row, "lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}
@@ -328,7 +328,7 @@ def joined_points(table, dim):
     for number, rows in of_number.items():
         points = np.concatenate([row.points for row in rows])
         if len(points) < dim:
-            table.errors.append(f"fracture {rows[0].title}: has {len(points)} points, needs {dim} at least")
+            table.errors.append(f"fracture {rows[0].title}: has {len(points)} points, needs at least {dim}")
         table.fractures.append(replace(rows[0], points=points))
     return table
 

@@ -176,16 +176,16 @@ class ExchangeTest(ProgramTest):
             self.refused(self.geojson([("Point", [0, 0], {}), ("LineString", x, {})], crs=None), why)
         self.refused(self.geojson([("Blob", [[1, 2], [3, 4]], {})], crs=None), "has a geometry of the type \"Blob\"")
         for content, why in (
-            ("[]", "is no GeoJSON"),
-            ("{", "is no JSON"),
+            ("[]", "is not GeoJSON"),
+            ("{", "is not valid JSON"),
             ('{"crs": null, "features": [3]}', "feature 1: "),
         ):
             broken.write_text(content)
             self.refused(broken, why)
         for name, content, why in (
-            ("net.dxf", "nonsense\n", "is no DXF file"),
+            ("net.dxf", "nonsense\n", "is not in the format DXF"),
             ("net.dxf", "  0\nSECTION\n  2\nENTITIES\n  0\nLINE\n 10\nabc\n", "line "),
-            ("net.shp", "text", "is no ESRI Shapefile file"),
+            ("net.shp", "text", "is not in the format ESRI Shapefile"),
         ):
             broken = self.folder / name
             broken.write_text(content)

@@ -73,7 +73,7 @@ class MapsTest(ProgramTest):
         self.assertIn("larger \"tolerance\"", self.refusal(sets, minimum_distance=5e-3))
         plan = self.plan(sets, tolerance=3e-3, minimum_distance=5e-3)
         self.assertTrue(any(line.startswith("left out 1 point closer") for line in plan.repairs), plan.repairs)
-        self.assertTrue(any(line.startswith("joined what was 0.00") for line in plan.repairs), plan.repairs)
+        self.assertTrue(any(line.startswith("closed a gap of 0.00") for line in plan.repairs), plan.repairs)
 
     def test_window_in_a_map(self):
         rows = ["id,x0,y0,x1,y1", "1,0.2,0.2,0.6,0.2", "2,2,0.7,3,0.7", "3,0.5,0.5,1.4,0.5", "4,0.3,0.8,0.30001,0.8"]
@@ -87,7 +87,7 @@ class MapsTest(ProgramTest):
         self.assertAlmostEqual(length(plan), 0.4 + 0.5, places=12)
         self.assertEqual(sum(line.startswith("left out: fracture") for line in plan.repairs), 2)
         lone = {"traces": sets["traces"], "others": {"file": self.file("far.csv", "1,5,5,6,6")}}
-        self.assertIn("others: has no fracture in the domain", self.refusal(lone, minimum_distance=1e-3, **LEFT_OUT))
+        self.assertIn("others: has no usable fracture in the domain", self.refusal(lone, minimum_distance=1e-3, **LEFT_OUT))
 
     def test_window_in_a_map_in_3d(self):
         def square(x, z=0.2):
@@ -110,7 +110,7 @@ class MapsTest(ProgramTest):
     def test_layers_of_a_drawing(self):
         sets = {"traces": {"file": self.drawing()}}
         self.assertIn("feature 2 of the layer \"FRAME\"): lies outside of the domain", self.refusal(sets))
-        self.assertIn("\"layers\" of its set chooses", self.refusal(sets, **LEFT_OUT))
+        self.assertIn("\"layers\" of its set selects", self.refusal(sets, **LEFT_OUT))
         sets["traces"]["layers"] = ["JOINTS"]
         self.assertAlmostEqual(length(self.plan(sets)), 1.1, places=12)
         sets["traces"]["layers"] = ["JOINTS", "CLEAVAGE"]
@@ -138,8 +138,8 @@ class MapsTest(ProgramTest):
         plan = self.plan({"traces": {"file": file}})
         self.assertEqual(plan.network.fractures[0].properties, {"friction coefficient": "0.5"})
         self.assertAlmostEqual(length(plan), 0.4, places=12)
-        for text, part in (("id,x,y\n1,0,0\n2,0.5,0.5\n2,0.6,0.6\n", "fracture 1 ("), ("id,x,y\n1,0,z\n", "\"z\" in column 3 is no number"),
-                           ("x,y\n1,0\n", "lack one of id, fid, number"), ("id,x,y\n,0,0\n", "has no number of a line")):
+        for text, part in (("id,x,y\n1,0,0\n2,0.5,0.5\n2,0.6,0.6\n", "fracture 1 ("), ("id,x,y\n1,0,z\n", "\"z\" in column 3 is not a number"),
+                           ("x,y\n1,0\n", "lack one of id, fid, number"), ("id,x,y\n,0,0\n", "lacks the number of the line")):
             self.assertIn(part, self.refusal({"traces": {"file": self.file("a.csv", text)}}))
 
     def test_discs_are_no_points(self):

@@ -256,7 +256,7 @@ class Refusals(unittest.TestCase):
 
     def test_lines(self):
         a, both = [[0.2, 0.5], [0.8, 0.5]], ('fracture "a" of "a"', 'fracture "b" of "b"')
-        self.refused({"a": a, "b": [[0.3, 0.5], [0.9, 0.5]]}, *both, "lie on each other")
+        self.refused({"a": a, "b": [[0.3, 0.5], [0.9, 0.5]]}, *both, "overlap; remove one")
         self.refused({"a": a, "b": a[::-1]}, *both, "are the same")
         self.refused({"a": a, "b": [[0.2, 0.5], [0.8, 0.51]]}, *both, "meet at 0.955 degrees")
         self.refused({"a": a, "b": [[0.2, 0.505], [0.5, 0.495], [0.8, 0.504]]}, *both, "meet at 1.91 degrees")  # and 1.72
@@ -290,9 +290,9 @@ class Refusals(unittest.TestCase):
         import arrange
         fan = {f"f{k}": [[0.1, 0.1 + 0.01 * k], [0.9, 0.9 - 0.01 * k]] for k in range(60)}
         with mock.patch.object(arrange, "MOST_CROSSINGS", 1000):
-            self.refused(fan, "too dense: fractures cross in 1770 points, at most 1000 are meshed", tolerance=1e-9)
+            self.refused(fan, "too dense: fractures cross in 1770 points, at most 1000 are allowed", tolerance=1e-9)
         with mock.patch.object(arrange, "MOST_PAIRS", 2000):
-            self.refused(fan, "too dense: of ", "more than 2000 pairs may be closer than ", tolerance=1e-9, minimum_angle=0.0, minimum_distance=0.0)
+            self.refused(fan, "too dense: more than 2000 pairs of its ", " edges may be closer than ", tolerance=1e-9, minimum_angle=0.0, minimum_distance=0.0)
 
     def test_what_is_no_fracture(self):
         far, square = {"lower corner": [2.0, 2.0], "upper corner": [3.0, 3.0], "corners": [], "faces": {}}, square_at(2, 0.5)
@@ -311,7 +311,7 @@ class Refusals(unittest.TestCase):
 
     def test_polygons(self):
         a, both = square_at(2, 0.5), ('fracture "a" of "a"', 'fracture "b" of "b"')
-        self.refused({"a": a, "b": a + [0.1, 0.1, 0]}, *both, "lie on each other")
+        self.refused({"a": a, "b": a + [0.1, 0.1, 0]}, *both, "overlap; remove one")
         self.refused({"a": a, "b": a[[1, 2, 3, 0]]}, *both, "are the same")
         self.refused({"a": a, "b": a + [[0, 0, -0.005], [0, 0, 0.005], [0, 0, 0.005], [0, 0, -0.005]]}, *both, "meet at 0.955 degrees")
         self.refused({"a": a, "b": square_at(0, 0.5, 0.3, 0.7) * [1, 1, 0.5] + [0, 0, 0.35005]}, *both, "are 5e-05 m apart")
