@@ -40,7 +40,7 @@ def geographic_library(path):
     try:
         from osgeo import ogr, osr
     except ImportError:
-        raise PlotError(f"{path}: writing this needs GDAL for Python: apt-get install python3-gdal") from None
+        raise PlotError(f"{path}: this format requires GDAL for Python: apt-get install python3-gdal") from None
     ogr.UseExceptions()
     osr.UseExceptions()
     return ogr, osr
@@ -49,7 +49,7 @@ def geographic_library(path):
 def metric_system(path, crs):
     """Returns the coordinate system of EPSG:N. Error if it is unknown or not in metres."""
     if not re.fullmatch(r"EPSG:\d{4,6}", crs):
-        raise PlotError(f"--crs {crs}: is no coordinate system, expected EPSG:NUMBER, such as EPSG:25832")
+        raise PlotError(f"--crs {crs}: is not a coordinate system, expected EPSG:NUMBER, such as EPSG:25832")
     _, osr = geographic_library(path)
     system = osr.SpatialReference()
     try:

@@ -114,13 +114,13 @@ def of_run(directory, time=None):
     written = read.written_steps(directory, "fractures")
     if not written:
         raise PlotError(
-            f"{directory}: holds no fractures.pvd: the run has no fractures, or its Output has \"vtu\" false"
+            f"{directory}: contains no fractures.pvd: the run has no fractures, or its Output has \"vtu\" false"
         )
     at, file = written[-1] if time is None else min(written, key=lambda step: abs(step[0] - time))
     grid = read.grid(file)
     data = read.arrays(grid.GetCellData())
     if not grid.GetNumberOfCells() or "state" not in data:
-        raise PlotError(f"{directory}: fractures.pvd holds no fractures that deform")
+        raise PlotError(f"{directory}: fractures.pvd contains no results of mechanics")
     plane = grid.GetCell(0).GetCellDimension() == 1
     surface = read.segments(grid) if plane else read.surface(grid)
     sizes = np.array(

@@ -101,8 +101,8 @@ def told(estimate, parameters, comparison, curve):
     for i in range(len(parameters)):
         for j in range(i):
             if abs(estimate.correlation[i, j]) > TOLD_APART:
-                yield (f'"{parameters[j].name}" and "{parameters[i].name}" cannot be told apart well: their errors have '
-                       f"the correlation {estimate.correlation[i, j]:.3f}")
+                yield (f'"{parameters[j].name}" and "{parameters[i].name}" are strongly correlated: the correlation of '
+                       f"their errors is {estimate.correlation[i, j]:.3f}")
     for kind, rows in ("fitted", comparison.rows), ("predicted", comparison.later):
         for p, d in zip(comparison.matched, comparison.differences(curve, rows)):
             if len(d):

@@ -38,7 +38,7 @@ def pair(path, columns, text, option, outputs):
     unit = UNITS[output if output in UNITS else output.rpartition("_")[0]]
     is_load_step = output == "t" and powers == units.of_unit("-")[1]
     if units.of_unit(unit)[1] != powers and not is_load_step:
-        raise FitError(f'{path}: column "{name}": its unit is not that of {output}, {unit} or a multiple')
+        raise FitError(f'{path}: column "{name}": its unit does not match {output}, expected {unit} or a multiple')
     return Pair(name, output, sign, sign * values, is_change)
 
 
@@ -55,12 +55,13 @@ class Comparison:
         self.later = [rows & (abs(x) > abs(until)) for rows in known]
         for p, rows in zip(matched, self.rows):
             if np.sum(rows) < 2:
-                raise FitError(f'{path}: column "{p.name}" has {np.sum(rows)} numbers beside those of "{along.name}", needs 2')
+                raise FitError(f'{path}: column "{p.name}" has {np.sum(rows)} numbers in rows '
+                               f'with "{along.name}", needs at least 2')
         known = x[np.isfinite(x)]
         if np.any(np.diff(known) <= 0):
             k = int(np.argmax(np.diff(known) <= 0))
             raise FitError(f'{path}: column "{along.name}" does not increase from {known[k]:.6g} to {known[k + 1]:.6g} (SI units, '
-                           f'as {along.output} is signed); compare along one that does, e.g. the time')
+                           f'as {along.output} is signed); choose an increasing column for --along, e.g. the time')
         self.weights = [1 / (np.ptp(p.values[rows]) or np.max(np.abs(p.values[rows])) or 1)
                         for p, rows in zip(matched, self.rows)]
 
@@ -94,5 +95,5 @@ class Comparison:
         known = self.along.values[np.isfinite(self.along.values)]
         if np.any(np.diff(x) < -1e-12 * np.max(np.abs(x))):
             return f"{self.along.output} does not increase along the computed path"
-        return (f'{self.along.output} reaches from {x[0]:.6g} to {x[-1]:.6g} on the computed path, "{self.along.name}" '
-                f"from {known[0]:.6g} to {known[-1]:.6g} (SI units); make the scene's path as long")
+        return (f'{self.along.output} spans {x[0]:.6g} to {x[-1]:.6g} on the computed path, "{self.along.name}" '
+                f"spans {known[0]:.6g} to {known[-1]:.6g} (SI units); extend the path of the scene")

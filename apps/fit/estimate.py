@@ -73,7 +73,7 @@ class Residuals:
                 if np.all(np.isfinite(change)):
                     break
             else:
-                raise ArithmeticError(f'"{p.name}": the model has no state on either side of {p.value(x[k]):.6g}')
+                raise ArithmeticError(f'"{p.name}": no solution of the model on either side of {p.value(x[k]):.6g}')
             columns.append(change)
         return np.array(columns).T
 
@@ -121,6 +121,6 @@ def fit(model, parameters, most=60):
     reach = stats.t.ppf((1 + LEVEL) / 2, max(len(found.fun) - int(np.sum(free)), 1)) * error
     intervals, why = [], []
     for k, p in enumerate(parameters):
-        why.append("at its bound" if at_bound[k] else "the data do not determine it" if undetermined[k] else None)
+        why.append("at its bound" if at_bound[k] else "not determined by the data" if undetermined[k] else None)
         intervals.append(None if why[k] else (p.value(found.x[k] - reach[k]), p.value(found.x[k] + reach[k])))
     return Estimate([p.value(s) for p, s in zip(parameters, found.x)], intervals, why, correlation, found.fun, r.count)

@@ -16,7 +16,7 @@ def read_lines(path):
             return [(k, row) for k, row in enumerate(csv.reader(file), 1) if any(word.strip() for word in row) and
                     not row[0].lstrip().startswith("#")]
     except (OSError, UnicodeDecodeError) as error:
-        raise FitError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'is no text in UTF-8'}") from None
+        raise FitError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'is not UTF-8 text'}") from None
 
 
 def read(path):
@@ -44,7 +44,7 @@ def titles(path, lines):
         found = re.fullmatch(r"\s*(.+?)\s*\(([^()]*)\)\s*", title)
         if not found:
             raise FitError(f'{path}: line {lines[0][0]}: column "{title.strip()}" has no unit; write e.g. "shear stress (MPa)", and '
-                           '"(-)" where there is none')
+                           '"(-)" for a dimensionless column')
         try:
             heads.append((found[1], *units.of_unit(found[2])))
         except units.UnitError as error:
@@ -60,7 +60,7 @@ def row_of(path, line, row, names):
         try:
             values.append(float(word) if word.strip() else np.nan)
         except ValueError:
-            raise FitError(f'{path}: line {line}: "{word.strip()}" in column "{name}" is no number') from None
+            raise FitError(f'{path}: line {line}: "{word.strip()}" in column "{name}" is not a number') from None
     if np.isinf(values).any():
         raise FitError(f"{path}: line {line}: has an infinite number")
     return values

@@ -23,7 +23,7 @@ class Point:
         except (OSError, xml.ParseError) as error:
             raise FitError(f"{scene}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
         if self.section("Point") is None:
-            raise FitError(f'{scene}: is no scene for the point driver: it has no section "Point"')
+            raise FitError(f'{scene}: is not a scene of the point driver: it has no section "Point"')
 
     def call(self, *words):
         return subprocess.run([self.program, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL,
@@ -80,7 +80,7 @@ class Specification:
         section = "Materials > NAME" if names[:1] == ["Materials"] else " > ".join(names)
         known = self.sections.get(section)
         if known is None:
-            raise FitError(f'"{path}": there is no section "{" > ".join(names)}" whose numbers could be fitted')
+            raise FitError(f'"{path}": there is no section "{" > ".join(names)}" with entries to fit')
         if name not in known:
             raise FitError(f'"{path}": there is no entry "{name}"{did_you_mean(name, known)}')
         return known[name]

@@ -32,7 +32,7 @@ def of_unit(text):
     factor, powers = 1.0, (0, 0, 0, 0)
     for operator, symbol, power in re.findall(r"(^|[*/ ])([^*/^ ()]*)(?:\^(-?\d+))?", text.replace("²", "^2").strip()):
         if operator == "" and not symbol and text.strip():
-            raise UnitError(f'"{text}" is no unit')
+            raise UnitError(f'"{text}" is not a unit')
         own, own_powers = of_symbol(symbol)
         k = int(power or 1) * (-1 if operator == "/" else 1)
         factor *= own**k

@@ -104,13 +104,13 @@ def of_run(directory, options):
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
     else:
-        why = "no step of the run was completed" if not states else 'it holds no bulk.pvd; the scene\'s Output has "vtu" false, or it was removed'
+        why = "no step of the run was completed" if not states else 'it contains no bulk.pvd; the scene\'s Output has "vtu" false, or it was removed'
         left_out("bulk.png or other picture of one step", directory, why)
     names = [name for name in names if "mean_jump" in states[-1]["fractures"][name]]
     if names and len(states) > 1:
         yield "loops", loops.of_fractures(states, names, name, *sizes, unloaded=loops.starts_unloaded(scene))
     elif names:
-        left_out("loops.png", directory, "it holds one step, a loop needs two")
+        left_out("loops.png", directory, "it contains one step, a loop requires two")
     start = float(scene.get("Time", {}).get("start", 0))
     dim = content.get("mesh", {}).get("dimension", 3)
     made = [("series", series.of_run(states, name, clock, start, dim)),

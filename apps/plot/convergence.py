@@ -17,12 +17,12 @@ def of_run(steps, title):
     if np.any(linear != newton):  # a direct solver needs one linear iteration for each Newton iteration
         per_solve = left.twinx()
         per_solve.plot(number, linear / np.maximum(newton, 1), "o-", color=LINES[1], markersize=3)
-        per_solve.set_ylabel("linear iterations for each of Newton's (-)", color=LINES[1])
+        per_solve.set_ylabel("linear iterations per Newton iteration (-)", color=LINES[1])
         per_solve.spines["right"].set_visible(True)
         per_solve.set_ylim(bottom=0)
         per_solve.grid(False)
     cut = [n for n, step in zip(number, steps) if step["cuts"] > 0]
-    left.plot(cut, [0.3] * len(cut), "v", color=LINES[3], markersize=4, label="step was halved")
+    left.plot(cut, [0.3] * len(cut), "v", color=LINES[3], markersize=4, label="step was bisected")
     if cut:
         left.legend()
 
@@ -31,7 +31,7 @@ def of_run(steps, title):
     drawn = {name: np.where(values > 0, values, np.nan) for name, values in measures.items() if np.any(values > 0)}
     for i, (name, values) in enumerate(drawn.items()):
         right.semilogy(number, values, markersize=3, label=name.replace("_", " "), **look(i))
-    right.set(xlabel="step", ylabel="relative residual (-)", title="left at the end of each step")
+    right.set(xlabel="step", ylabel="relative residual (-)", title="residual at the end of each step")
     if drawn:
         low, high = (limit(np.log10(limit_of(list(drawn.values())))) for limit, limit_of in ((np.floor, np.nanmin), (np.ceil, np.nanmax)))
         right.set_ylim(10.0**low, 10.0 ** max(high, low + 1))

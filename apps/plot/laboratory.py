@@ -19,7 +19,7 @@ def specimens(path):
         for row in rows[1:]:
             curves.setdefault(row[at], []).append([float(word) for word in row[:at] + row[at + 1:]])
     except ValueError as error:
-        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
+        raise PlotError(f"{path}: a line contains no numbers ({error})") from None
     titles = rows[0][:at] + rows[0][at + 1:]
     return {name: dict(zip(titles, np.array(values).T)) for name, values in curves.items()}
 

@@ -40,8 +40,8 @@ def of_step(step, title):
             above.sum() * 10 ** (-b * (magnitudes[above] - least)),
             color=LINES[3],
             linestyle=STYLES[1],
-            label=f"b = {b:.2f} ± {error:.2f} from {least:.1f} on",
+            label=f"b = {b:.2f} ± {error:.2f} for magnitudes of at least {least:.1f}",
         )
-    ax.set(xlabel="moment magnitude (-)", ylabel="fractures of at least this magnitude (-)")
+    ax.set(xlabel="moment magnitude (-)", ylabel="fractures with at least this magnitude (-)")
     ax.legend()
     return figure

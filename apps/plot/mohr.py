@@ -85,7 +85,7 @@ def draw_envelopes(ax, joints, traction, largest):
             )
             drawn += 1
     if unknown:
-        ax.plot([], [], linestyle="", label=f"no strength drawn of {', '.join(unknown)}")
+        ax.plot([], [], linestyle="", label=f"strength not drawn: {', '.join(unknown)}")
 
 
 def stress_paths(content, time):

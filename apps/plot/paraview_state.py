@@ -71,10 +71,10 @@ def state_of(directory):
     results(directory)
     steps = written_steps(directory, "bulk")
     if not steps:
-        raise PlotError(f'{directory}: holds no bulk.pvd; the scene\'s Output has "vtu" false')
+        raise PlotError(f'{directory}: contains no bulk.pvd; the scene\'s Output has "vtu" false')
     rock = grid(steps[-1][1])
     if not rock.GetPointData().HasArray("displacement"):
-        raise PlotError(f"{directory}: a state for ParaView is written of runs that deform; open bulk.pvd and fractures.pvd")
+        raise PlotError(f"{directory}: a ParaView state requires a run with mechanics; open bulk.pvd and fractures.pvd instead")
     warp = warp_factor(vtk_to_numpy(rock.GetPoints().GetData()), arrays(rock.GetPointData())["displacement"])
     solid, run = not is_plane(rock), Path(directory).resolve()
     return STATE.format(

@@ -24,7 +24,7 @@ def csv_rows(path):
         with open(path, newline="", encoding="utf-8-sig") as file:
             rows = [(k, row) for k, row in enumerate(csv.reader(file), 1) if row]
     except (UnicodeDecodeError, csv.Error):
-        raise PlotError(f"{path}: is no CSV in UTF-8") from None
+        raise PlotError(f"{path}: is not a CSV file in UTF-8") from None
     titles = rows[0][1] if rows else []
     for k, title in enumerate(titles):
         if title in titles[:k]:
@@ -39,11 +39,11 @@ def point_csv(path):
     """Returns {column: values} of a CSV file of `sprekk point`, and the tangential axes ["t"] or ["t1", "t2"]."""
     rows = csv_rows(path)
     if len(rows) < 2 or not {"t", "state", "jump_n"} <= set(rows[0]):
-        raise PlotError(f'{path}: is no CSV of "sprekk point"; such a file starts with "t,state,jump_n"')
+        raise PlotError(f'{path}: is not a CSV file of "sprekk point", which starts with "t,state,jump_n"')
     try:
         columns = dict(zip(rows[0], np.array(rows[1:], dtype=float).T))
     except ValueError as error:
-        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
+        raise PlotError(f"{path}: a line contains no numbers ({error})") from None
     return columns, [name[len("jump_"):] for name in columns if name.startswith("jump_t")]
 
 
@@ -51,11 +51,11 @@ def results(directory):
     """Returns the content of results.json. Error for a run without steps."""
     path = Path(directory) / "results.json"
     if not path.is_file():
-        raise PlotError(f'{directory}: holds no results.json; "sprekk run" writes one into its output directory')
+        raise PlotError(f'{directory}: contains no results.json; "sprekk run" writes one into its output directory')
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:  # invalid JSON or UTF-8
-        raise PlotError(f"{path}: is no JSON ({error})") from None
+        raise PlotError(f"{path}: is not valid JSON ({error})") from None
     check_results(path, content)
     if not content.get("steps"):
         raise PlotError(f"{path}: no step of the run has been completed")
@@ -103,7 +103,7 @@ def scene(directory):
     try:
         return section(xml.parse(path).getroot()) if path.is_file() else {}
     except xml.ParseError as error:
-        raise PlotError(f"{path}: is no XML ({error})") from None
+        raise PlotError(f"{path}: is not valid XML ({error})") from None
 
 
 def entries(section, name):
@@ -131,7 +131,7 @@ def listed(path, tag="DataSet", attribute="file"):
     try:
         entries = xml.parse(path).getroot().findall(f".//{tag}")
     except xml.ParseError as error:
-        raise PlotError(f"{path}: is no XML ({error})") from None
+        raise PlotError(f"{path}: is not valid XML ({error})") from None
     if any(entry.get(attribute) is None for entry in entries):
         raise PlotError(f'{path}: a {tag} has no "{attribute}"')
     return [(entry, path.parent / entry.get(attribute)) for entry in entries]

@@ -103,13 +103,13 @@ def probe(path):
     rows = csv_rows(path)
     titles = [TITLE.match(title) for title in rows[0]] if rows else []
     if not titles or None in titles or titles[0]["name"] != "time":
-        raise PlotError(f'{path}: is no CSV of a probe; such a file starts with "time [s],"')
+        raise PlotError(f'{path}: is not a CSV file of a probe, which starts with "time [s],"')
     try:
         values = np.array([[float(word) if word else np.nan for word in row] for row in rows[1:]]).reshape(
             -1, len(titles)
         )
     except ValueError as error:
-        raise PlotError(f"{path}: a line holds no numbers ({error})") from None
+        raise PlotError(f"{path}: a line contains no numbers ({error})") from None
     return [(title["name"], title["unit"], column) for title, column in zip(titles, values.T)]
 
 

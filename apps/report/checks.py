@@ -47,7 +47,7 @@ def convergence(steps):
 
 def halvings(steps):
     cut = sum(step["cuts"] > 0 for step in steps)
-    words = f"{cut} of {len(steps)} steps were halved" if cut else "no step was halved"
+    words = f"{cut} of {len(steps)} steps were bisected" if cut else "no step was bisected"
     return Check("time steps", "noted" if cut else "passed", words)
 
 
@@ -93,14 +93,14 @@ def forces(steps, scene):
         yield Check(
             "balance of forces",
             "noted",
-            f"the reactions sum up to ({', '.join(map(number, total))}), which the "
-            f"other loads carry ({', '.join(loads)})",
+            f"the sum of the reactions is ({', '.join(map(number, total))}), balanced by the "
+            f"other loads ({', '.join(loads)})",
         )
     else:
         yield Check(
             "balance of forces",
             "passed" if relative <= MOST_UNBALANCED else "failed",
-            f"the reactions sum up to {number(relative)} of the largest force",
+            f"the sum of the reactions is {number(relative)} of the largest force",
         )
 
 
@@ -118,10 +118,10 @@ def fluid(steps, dim):
         yield Check(
             f"balance of {kind}",
             "noted",
-            f"at the end {quantity(through)} {unit} come in through boundaries"
-            + (" beyond what the fluid carries at their temperatures" if carried else "")
+            f"inflow at the end: {quantity(through)} {unit} through boundaries"
+            + (" in addition to the heat of the fluid at their temperatures" if carried else "")
             + f" and {quantity(by_wells)} {unit} through wells"
-            + ("" if carried else f"; their sum, {quantity(through + by_wells)} {unit}, is stored"),
+            + ("" if carried else f"; the sum, {quantity(through + by_wells)} {unit}, is stored"),
         )
 
 

@@ -56,7 +56,7 @@ def of_fractures(fractures, dim):
             columns.append(column(title, [fractures[name].get(key) for name in shown], base))
     if not shown or len(columns) == 1:
         return
-    note = f"{len(names) - len(shown)} more slip less" if len(names) > len(shown) else ""
+    note = f"{len(names) - len(shown)} others with less slip" if len(names) > len(shown) else ""
     yield Table("Fractures", [title for title, _ in columns], list(zip(*(values for _, values in columns))), note)
 
 
@@ -105,7 +105,7 @@ def of_costs(content):
         (name.replace("_", " "), str(part["count"]), f"{part['seconds']:.2f}", f"{part['cpu_seconds']:.2f}")
         for name, part in timing
     ]
-    yield Table("Time", ["part", "calls", "seconds", "CPU seconds"], rows, "parts may hold others")
+    yield Table("Time", ["part", "calls", "seconds", "CPU seconds"], rows, "parts may include others")
 
 
 def of_run(content):

@@ -10,15 +10,15 @@ CAPTIONS = {
     "overview": "Slip of fractures and change of the fluid pressure",
     "bulk": "Rock, deformed: displacement, von Mises stress and largest compressive stress",
     "fractures": "Fractures: tangential jump, slip, opening, tractions and contact state",
-    "maps": "Where fractures slip and open, and which directions tend to slip",
+    "maps": "Slip and opening of fractures in space, and slip tendency by direction",
     "flow": "Pressure and flow in rock and fractures",
     "temperature": "Temperature and heat flux in the rock",
-    "error": "Where the estimated error sits",
+    "error": "Distribution of the estimated error",
     "loops": "Mean traction against mean jump of fractures, over all steps",
-    "mohr": "Stress on fracture faces beside the strength of the joints",
+    "mohr": "Stress on fracture faces, compared with the strength of the joints",
     "series": "Over time",
-    "magnitudes": "How many fractures slipped with at least a magnitude",
-    "convergence": "Iterations of each step, and what was left at its end",
+    "magnitudes": "Number of fractures with at least a given magnitude",
+    "convergence": "Iterations of each step, and residuals at its end",
 }
 OPEN_ON_PAPER = (
     "addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((d) => { d.open = true; }))"
@@ -111,7 +111,7 @@ def of_run(name, results, scene, checks, tables, drawn, left_out, view, viewer):
         (
             "scene",
             "Scene",
-            f"<p>{text(summary(results, scene))}</p><details><summary>All that is not a default</summary>{scene_in_words(scene)}</details>",
+            f"<p>{text(summary(results, scene))}</p><details><summary>Entries that differ from the defaults</summary>{scene_in_words(scene)}</details>",
         ),
         ("checks", "Checks", checks_list(checks)),
         ("figures", "Key figures", "".join(map(table, found)) or "<p>None.</p>"),

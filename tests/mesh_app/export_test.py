@@ -100,9 +100,9 @@ class ExportTest(ProgramTest):
         self.assertEqual(features.corners_of(points, closed=False).tolist(), points[[0, 2, 3]].tolist())
 
     def test_errors(self):
-        self.assertIn("holds no results.json", self.export("net.geojson", expect=1))
+        self.assertIn("contains no results.json", self.export("net.geojson", expect=1))
         self.run_scene("verification/crossing_2d.xml", "Output.vtu=false")
-        self.assertIn("holds no fractures.pvd", self.export("net.geojson", expect=1))
+        self.assertIn("contains no fractures.pvd", self.export("net.geojson", expect=1))
         self.assertIn("ends in none of .geojson", self.export("net.txt", expect=1))
         self.assertIn("expected EPSG:NUMBER", self.export("net.geojson", "--crs", "utm", expect=1))
         for file in ("net.geojson", "net.shp"):

@@ -172,16 +172,16 @@ class Fits(ProgramTest):
                 ((path, *ALONG, *STRESS, "--parameter", "residual friction angle=30..20"), "LOW below HIGH"),
                 ((path, *ALONG, *STRESS, "--parameter", "peak slip"), "no number to start from"),
                 ((path, "--along", "slop=jump_t", *STRESS, *one), 'has no column "slop", its columns are: "slip"'),
-                ((path, "--along", "slip=traction_t", *STRESS, *one), "its unit is not that of traction_t"),
+                ((path, "--along", "slip=traction_t", *STRESS, *one), "its unit does not match traction_t"),
                 ((path, "--along", "slip=jump_x", *STRESS, *one), 'no output "jump_x"'),
-                ((path, *ALONG, *STRESS, *one, "--set", "Time.end=20"), '"slip" from 0.0001 to'),
+                ((path, *ALONG, *STRESS, *one, "--set", "Time.end=20"), '"slip" spans 0.0001 to'),
                 ((path, *ALONG, *STRESS, *one, "--set", "Materials.joint.dilation=none"), 'Materials > joint > "dilation"'),
                 ((bare, *ALONG, *STRESS, *one), 'bare.csv: line 1: column "slip" has no unit'),
-                ((short, *ALONG, *STRESS, *one), 'short.csv: line 3: "x" in column "shear stress" is no number'),
+                ((short, *ALONG, *STRESS, *one), 'short.csv: line 3: "x" in column "shear stress" is not a number'),
                 ((self.folder / "none.csv", *ALONG, *STRESS, *one), "none.csv: cannot be read")):
             with self.subTest(expected=expected):
                 self.assertIn(expected, self.fit(*words, expect=1))
-        self.assertIn("is no scene for the point driver", self.fit(path, *ALONG, *STRESS, *one, expect=1, scene="seed/push_2d.xml"))
+        self.assertIn("is not a scene of the point driver", self.fit(path, *ALONG, *STRESS, *one, expect=1, scene="seed/push_2d.xml"))
 
 
 if __name__ == "__main__":

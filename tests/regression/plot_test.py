@@ -154,7 +154,7 @@ class Pictures(PlotTest):
         pressure = read.arrays(joints.GetCellData())["fracture pressure"]
         np.testing.assert_allclose(np.sort(panels["pressure"][0]), np.sort(pressure) / 1e6, rtol=1e-6)
         _, err = self.draw(self.folder / "out", "--paraview", expect=1)
-        self.assertIn("of runs that deform", err)
+        self.assertIn("requires a run with mechanics", err)
 
     def test_heat(self):
         """Temperature and heat flux are those of the run, in 2D on one rank and in 3D on two."""
@@ -324,7 +324,7 @@ class Pictures(PlotTest):
         self.run_scene("seed/push_2d.xml", "Output.vtu=false", output="numbers")
         out, err = self.draw(self.folder / "numbers", "--dpi", "30")
         self.assertEqual([Path(line).name for line in out.splitlines()], ["convergence.png"])
-        self.assertIn(f'no bulk.png or other picture of one step of {self.folder / "numbers"}: it holds no bulk.pvd; the scene\'s Output has "vtu" false', err)
+        self.assertIn(f'no bulk.png or other picture of one step of {self.folder / "numbers"}: it contains no bulk.pvd; the scene\'s Output has "vtu" false', err)
         self.run_scene(ROOT / "docs/shear_test.xml", "Solver.maximum iterations=1", "Tables.ramp.values={0, 1000, 0}", output="failed", expect=3)
         self.assertIn("of one step of", self.draw(self.folder / "failed", "--dpi", "30")[1])
 
@@ -523,14 +523,14 @@ class Errors(PlotTest):
 
     def test_wrong_paths(self):
         self.expect_error(self.folder / "absent", ["no such file"])
-        self.expect_error(self.folder, ["holds no results.json"])
-        self.expect_error(self.folder, ["holds no results.json"], "--paraview")
+        self.expect_error(self.folder, ["contains no results.json"])
+        self.expect_error(self.folder, ["contains no results.json"], "--paraview")
 
     def test_wrong_content(self):
-        self.expect_error(self.write("notes.csv", "a,b\n1,2\n"), ["is no CSV", "t,state"])
+        self.expect_error(self.write("notes.csv", "a,b\n1,2\n"), ["is not a CSV file", "t,state"])
         self.expect_error(self.write("cut.csv", "t,state,jump_n\n1,2\n3,4,x\n"), ["not complete"])
-        self.expect_error(self.write("picture.csv", "\x89PNG"), ["is no CSV"])
-        self.expect_error(self.write("run/results.json", "{").parent, ["is no JSON"])
+        self.expect_error(self.write("picture.csv", "\x89PNG"), ["is not a CSV file"])
+        self.expect_error(self.write("run/results.json", "{").parent, ["is not valid JSON"])
         self.expect_error(self.write("run/results.json", '{"steps": []}').parent, ["no step"])
 
     def test_lost_pieces(self):
@@ -571,7 +571,7 @@ class Errors(PlotTest):
             self.write("run/results.json", json.dumps({**known, "steps": [step]}))
             self.expect_error(self.folder / "run", [f'"{name}" of step 1 is ', "expected "])
         (self.folder / "run/results.json").write_bytes(b'{"reason": "\xff"}')
-        self.expect_error(self.folder / "run", ["results.json: is no JSON"])
+        self.expect_error(self.folder / "run", ["results.json: is not valid JSON"])
 
     def test_columns_by_their_titles(self):
         """Columns may have any order. Repeated or additional columns are errors."""

@@ -69,7 +69,7 @@ class Pages(ReportTest):
             "8 steps up to",
             "estimated error of the stress",
             "Key figures",
-            "no step was halved",
+            "no step was bisected",
             "largest memory",
         ):
             self.assertIn(words, page)
@@ -98,7 +98,7 @@ class Pages(ReportTest):
     def test_wrong_folders(self):
         self.assertIn("no such directory", self.write(expect=1))
         (self.folder / "out").mkdir()
-        self.assertIn("holds no results.json", self.write(expect=1))
+        self.assertIn("contains no results.json", self.write(expect=1))
         self.run_scene("seed/push_2d.xml")
         said = self.write("--output", self.folder / "absent/report.html", expect=1)
         self.assertIn("report.html: cannot be written: there is no folder", said)
