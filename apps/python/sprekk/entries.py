@@ -131,7 +131,7 @@ class Plan:
         if self.open:
             self.attributes["sections"] = OTHERS, "dict[str, Any]", "sections as they stand in the scene"
         if any(plan.name == self.name for plan in plans):
-            raise AssertionError(f"two sections make the class {self.name}")
+            raise AssertionError(f"two sections define the class {self.name}")
         plans.append(self)
 
     def add_section(self, inner, path, plans):

@@ -29,7 +29,7 @@ class Field(np.ndarray):
 
     def _check(self):
         if self._epoch is not None and self._epoch.over:
-            raise StaleField("the model has been changed or closed since this array was asked for; ask for it again")
+            raise StaleField("the model has been changed or closed since this array was requested; request it again")
 
     def _writable(self):
         """Returns the same values as an ordinary, writable array."""

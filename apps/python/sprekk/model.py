@@ -88,8 +88,8 @@ class Model:
         Returns a pandas.DataFrame with a row for each step: time, dt, iterations and bisections. Raises NotConverged. A
         scene with the section Accuracy raises an Error, since it requires several meshes and `./sprekk run`."""
         if "Accuracy" in self.scene.entries:
-            raise _sprekk.Error(f'{self.scene.name}: Sprekk > Accuracy: a Model has one mesh, so that run() cannot reach an '
-                                'error that is asked for; `./sprekk run` does. Leave the section out to run on this mesh')
+            raise _sprekk.Error(f'{self.scene.name}: Sprekk > Accuracy: a Model has one mesh, so run() cannot reach a '
+                                'target error; use `./sprekk run`, or remove the section to run on this mesh')
         steps = _sprekk.Steps(self._handle)
         results = _sprekk.Results(self._handle, os.fspath(output)) if output is not None else None
         rows = []
@@ -208,7 +208,7 @@ class Model:
         mesh = self.mesh
         ids = {"node": mesh.node_id, "cell": mesh.cell_id, "fracture face": mesh.face_id}.get(entity)
         if ids is None:
-            raise _sprekk.Error(f'"{name}" cannot be gathered: it lives on entities without numbers, "{entity}"')
+            raise _sprekk.Error(f'"{name}" cannot be gathered: it belongs to entities without numbers, "{entity}"')
         return self._gathered(values, ids[:len(values)], root)
 
     def gather_mesh(self, root=0):

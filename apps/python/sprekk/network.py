@@ -22,7 +22,7 @@ def traces(table, geometry="geometry", name=None):
     for k, key in enumerate(names):
         if key in rows:
             raise _sprekk.Error(f'traces: rows {rows[key]} and {k}, counted from 0 on, have the same name, "{key}"; '
-                                "each trace needs a name of its own")
+                                "each trace needs its own name")
         rows[key] = k
     return {"lines": {key: {"points": [float(x) for point in getattr(line, "coords", line) for x in point]}
                       for key, line in zip(names, lines)}}

@@ -13,7 +13,7 @@ def picture(model, name=None, *, component=None, scale=0, axes=None, **options):
     from matplotlib.collections import LineCollection
     mesh = model.mesh
     if mesh.dim != 2:
-        raise ValueError("a picture is of a plane model; in 3D use mesh.to_meshio() with PyVista")
+        raise ValueError("pictures require a 2D model; in 3D use mesh.to_meshio() with PyVista")
     axes = axes or plt.figure(layout="constrained").add_subplot()
     u = model.output("displacement") if scale else np.zeros_like(mesh.coordinates)
     outline = mesh.triangulation(u, scale)

@@ -19,7 +19,7 @@ def sensitivities(model, t, quantity, parameters):
                 returns q and {unknown: dq/dvalues}. Called on rank 0 only
     parameters  paths of numerical entries, "Materials.rock.Young's modulus"; for lists (path, index)"""
     if model._made_with["given_pressure"] is not None:
-        raise _sprekk.Error("a pressure that is given from outside is no entry of the scene: its part in derivatives is not known")
+        raise _sprekk.Error("a pressure imposed from outside is not an entry of the scene: its contribution to derivatives is unknown")
     begin, before = model.time, {name: np.array(model.field(name)) for name in model.fields}
     model.step(t)
     names = model._handle.blocks()

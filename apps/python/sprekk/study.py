@@ -56,7 +56,7 @@ def name_of(function):
     module, name = function.__module__, function.__qualname__
     file = getattr(sys.modules.get(module), "__file__", None)
     if "<" in name or (module == "__main__" and not file):
-        raise _sprekk.Error(f'a process of its own cannot find "{name}": define it in a script or a module, at its top '
+        raise _sprekk.Error(f'a separate process cannot find "{name}": define it in a script or a module, at its top '
                             'level, or name it, "script.py:function"')
     return f"{file}:{name}" if module == "__main__" else f"{module}:{name}"
 
