@@ -545,7 +545,7 @@ class Runs(MeshTest):
             self.assertAlmostEqual(results["steps"][0]["fractures"]["set"]["area"], 1.2, 9)
         self.assertAlmostEqual(results["steps"][0]["reactions"]["south"][1], self.results("out1")["steps"][0]["reactions"]["south"][1], delta=1)
         self.assertIn("no errors", self.launch("check", scene))
-        self.assertEqual(sorted(p.name for p in self.folder.iterdir() if p.is_dir()), ["apps", "build", "out1", "out2"])
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir() if p.is_dir()), ["apps", "out1", "out2"])
         self.launch("run", scene, "--output", "again", "--set", "Mesh file.order=2")
         self.assertIn("network", (self.folder / "again/effective_input.xml").read_text())
         self.launch("run", "again/effective_input.xml", "--output", "once more")
