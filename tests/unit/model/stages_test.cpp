@@ -95,7 +95,10 @@ TEST(Stages, RefuseNamesThatDoNotExist) {
               HasSubstr("stage \"a\": \"backfill\": names \"core\", which is not excavated at this time"));
   EXPECT_THAT(refusal(also(core, {"Stages.a.time=0.5", "Stages.a.excavate={core}", "Stages.a.backfill={core}"})),
               HasSubstr("\"backfill\": names \"core\", and so does \"excavate\": take two stages"));
-  EXPECT_THAT(refusal({"Stages.a.time=0.5", "Stages.a.excavate={core}"}), HasSubstr("stage \"a\""));
+  EXPECT_THAT(refusal({"Stages.a.time=0.5", "Stages.a.excavate={core}"}),
+              HasSubstr("stage \"a\": Sprekk > Regions > \"core\": is \"core\", must be one of \"bulk\""));
+  EXPECT_THAT(refusal({"Stages.a.time=0.5", "Stages.a.Matter.rock.density=1.0"}),
+              HasSubstr("stage \"a\": Sprekk > \"Matter\": unknown; allowed are"));
   EXPECT_THAT(refusal({"Stages.a.time=0.5", "Stages.a.Boundary conditions.pull.boundary=up"}),
               HasSubstr("block.xml: stage \"a\": Sprekk > Boundary conditions > pull > \"boundary\": is \"up\""));
 }
