@@ -64,11 +64,10 @@ struct PointCurve {
   std::string specimen = {};  ///< name of the specimen, if the scene has several
 };
 
-/// Returns true for a model with exactly one flux error estimator and without mechanics; shares() requires it. Stored
-/// data. Integrates the path with implicit Euler, one state per step. A step has no state if the prescribed values
-/// admit none. Examples are a jump impossible for a rigid joint, and a shear traction above the friction bound. If the
-/// bound decreases with slip faster than the loading system unloads, slip jumps. The step is then divided and has
-/// states just before and after the jump.
+/// Integrates the path with implicit Euler, one state per step. A step has no state if the prescribed values admit
+/// none. Examples are a jump impossible for a rigid joint, and a shear traction above the friction bound. If the bound
+/// decreases with slip faster than the loading system unloads, slip jumps. The step is then divided and has states just
+/// before and after the jump.
 std::vector<PointCurve> drive_points(const PointScene& scene);
 
 /// Returns the states of a scene with one point, at the ends of steps and at jumps. Throws an Error if a step has no
