@@ -283,7 +283,7 @@ class Wrong(unittest.TestCase):
 
     def test_accuracy_is_refused(self):
         model = sprekk.Model(sprekk.Scene(ROOT / "xml/accuracy/fault_2d.xml"))
-        with self.assertRaisesRegex(sprekk.Error, "Accuracy: a Model has one mesh.*`./sprekk run` does"):
+        with self.assertRaisesRegex(sprekk.Error, "Accuracy: a Model has one mesh.*use `./sprekk run`"):
             model.run()
         self.assertEqual(model.time, 0)
 
