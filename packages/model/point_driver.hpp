@@ -67,8 +67,7 @@ class PointDriver {
     return states;
   }
 
-  /// Returns true if the tension prescribed at t exceeds the present strength. Then there is no state, and the joint
-  /// separates.
+  /// Returns true if the tension prescribed at t exceeds the present strength: there is no state, the joint separates.
   bool is_pulled(Real t) const {
     const Real strength = law_.is_bonded() ? law_.cohesion(at_rest()).strength : 0;
     return control(0) == "traction" && point_.path[0]({0, 0, 0}, t) > strength;

@@ -237,7 +237,7 @@ class BalanceError final : public MeshError {
       if (parameters_.wells.wells[c.well].name == J.well)
         rows[c.face >= 0](c.row, 0) += is_flow(J) ? c.index : c.index / index_of_wells_[c.well];
   }
-  /// Adds the derivative of a boundary flow, which is that by the prescribed pressure.
+  /// Adds the derivative of a boundary flow with respect to the prescribed pressure.
   template <class Rows>
   void add_boundary(const std::string& boundary, const Rows& rows) const {
     const auto& mesh = system_.mesh();

@@ -116,7 +116,7 @@ struct InCells {
       for (int k = 0; k < n_passed(); ++k) host(e, k) = all[e * n_passed() + k];
     Kokkos::deep_copy(passed, host);
   }
-  /// Updates the history. `anew`: sets the volume of the last step to zero, as at the start of a run.
+  /// Updates the history. `anew` sets the volume of the last step to zero; a run starts with this value.
   template <class Assembler, class Op>
   void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& kept,
             bool anew) const {
