@@ -161,6 +161,22 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
   return all;
 }
 
+std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
+                                           bool of_fractures) {
+  std::vector<FluxCondition> conditions;
+  for (const auto& [name, one] : scene.boundary_conditions) {
+    const auto& flux = one.*entries.flux;
+    const auto& coefficient = one.*entries.coefficient;
+    if (one.fracture.has_value() != of_fractures || !(flux || coefficient)) continue;
+    conditions.push_back({.boundary = index_of(mesh.boundary_names, one.boundary),
+                          .value = flux ? *flux : *(one.*entries.beyond),
+                          .coefficient = coefficient,
+                          .region = one.region ? index_of(mesh.region_names, *one.region) : -1,
+                          .fracture = one.fracture ? index_of(mesh.fracture_names, *one.fracture) : -1});
+  }
+  return conditions;
+}
+
 std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh) {
   const auto n = mesh.region_names.size();
   std::vector<int> here(mesh.boundary_names.size() * n, 0);

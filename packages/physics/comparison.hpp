@@ -3,6 +3,7 @@
 
 #include "assembly/constraints.hpp"
 #include "base/text.hpp"
+#include "physics/outflow.hpp"
 #include "physics/scene.hpp"
 
 #include <algorithm>
@@ -102,6 +103,15 @@ class Comparison {
 std::vector<assembly::DirichletCondition> dirichlet_conditions(
     const std::map<std::string, BoundaryCondition>& conditions, const std::map<std::string, Region>& regions,
     const MeshNames& names, const std::string& field = "");
+
+/// Entries of a boundary condition that define a FluxCondition: a flux, or a coefficient and the exterior value.
+struct FluxEntries {
+  std::optional<base::Expression> BoundaryCondition::*flux, BoundaryCondition::*beyond, BoundaryCondition::*coefficient;
+};
+
+/// Flux conditions of a scene on rock, or on ends of fractures.
+std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
+                                           bool of_fractures = false);
 
 /// Returns a line for each boundary condition whose region does not touch its boundary. Collective.
 std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh);

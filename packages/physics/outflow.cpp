@@ -1,28 +1,11 @@
 #include "physics/outflow.hpp"
 
-#include "physics/entry_of_place.hpp"
-#include "physics/scene.hpp"
+#include "base/entry_of_place.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace sprekk::physics {
-
-std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
-                                           bool of_fractures) {
-  std::vector<FluxCondition> conditions;
-  for (const auto& [name, one] : scene.boundary_conditions) {
-    const auto& flux = one.*entries.flux;
-    const auto& coefficient = one.*entries.coefficient;
-    if (one.fracture.has_value() != of_fractures || !(flux || coefficient)) continue;
-    conditions.push_back({.boundary = index_of(mesh.boundary_names, one.boundary),
-                          .value = flux ? *flux : *(one.*entries.beyond),
-                          .coefficient = coefficient,
-                          .region = one.region ? index_of(mesh.region_names, *one.region) : -1,
-                          .fracture = one.fracture ? index_of(mesh.fracture_names, *one.fracture) : -1});
-  }
-  return conditions;
-}
 
 bool Outflow::constant_in_time() const {
   return std::all_of(conditions_.begin(), conditions_.end(),

@@ -14,9 +14,6 @@
 
 namespace sprekk::physics {
 
-struct BoundaryCondition;
-struct Scene;
-
 /// Prescribed outflow per area and time: the value, or c (u - value) with a coefficient c, see Exchange. In the second
 /// case the value is that of u outside.
 struct FluxCondition {
@@ -26,15 +23,6 @@ struct FluxCondition {
   int region = -1;    ///< only faces of cells of this region; -1: all
   int fracture = -1;  ///< only ends of this fracture, with the area length times aperture; -1: rock
 };
-
-/// Entries of a boundary condition that define a FluxCondition: a flux, or a coefficient and the exterior value.
-struct FluxEntries {
-  std::optional<base::Expression> BoundaryCondition::*flux, BoundaryCondition::*beyond, BoundaryCondition::*coefficient;
-};
-
-/// Flux conditions of a scene on rock, or on ends of fractures.
-std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
-                                           bool of_fractures = false);
 
 struct OutflowNames {
   std::string coefficient;  ///< name of its entry in a scene

@@ -5,13 +5,11 @@
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
 #include "mesh/mesh.hpp"
-#include "physics/fluid_change.hpp"
+#include "physics/carried.hpp"
 #include "physics/mesh_error.hpp"
 
 #include <functional>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,13 +47,8 @@ struct Prescribed {
   std::vector<Real> lower_corner = {}, upper_corner = {};  ///< only nodes in this box; empty: all nodes
 };
 
-/// Quantity transported by the fluid of Flow. A fluid volume V at reference conditions carries `capacity` * u * V.
-struct Carried {
-  std::string field;  ///< u on cells; on facets the name has the prefix "face "
-  Real capacity;
-  std::string total, unit;                           ///< name and unit in results.json of the rate supplied by wells
-  std::map<std::string, base::Expression> in_wells;  ///< [well] u(t) of the injected fluid; default: local u
-  std::optional<FluidChange> change = {};            ///< effect on the fluid; at most one physics has one
+/// Quantity transported by the fluid of Flow.
+struct CarriedQuantity : Carried {
   /// Second-order transport (see Antidiffusion): storage capacity, per unit of u, of local cells (per
   /// volume) and of the filling of local fracture faces.
   std::function<std::vector<Real>(const Setting&)> stored_in_cells = {}, stored_in_fractures = {};
@@ -116,7 +109,7 @@ struct Physics {
   /// Creates the spatial error estimator; null: none. The result holds a reference to the system. Collective.
   static std::unique_ptr<MeshError> mesh_error(const Setting&, assembly::System&) { return nullptr; }
   /// Quantities that the fluid transports for this physics.
-  static std::vector<Carried> carried(const Scene&) { return {}; }
+  static std::vector<CarriedQuantity> carried(const Scene&) { return {}; }
   /// Facet field whose fracture balance receives the power dissipated by sliding; empty: none.
   static std::string takes_friction_power(const Scene&) { return ""; }
   /// Names of entries that must not change when the scene of a live model changes. The state is measured relative to

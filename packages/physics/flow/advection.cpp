@@ -195,7 +195,7 @@ struct InFractures {
 template <class Where>
 class AdvectionModule final : public assembly::Module {
  public:
-  AdvectionModule(Where where, const Carried& carried, std::vector<Real> stored)
+  AdvectionModule(Where where, const Carried& carried, std::optional<std::vector<Real>> stored)
       : where_(std::make_unique<Where>(std::move(where))), carried_(carried), stored_(std::move(stored)) {}
 
   std::string name() const override { return "advection of " + carried_.field + where_->place(); }
@@ -268,7 +268,7 @@ class AdvectionModule final : public assembly::Module {
     std::vector<Real> u, of_ends, flow, stored;
     for (LocalIndex e = 0; e < assembler_->n_entities(); ++e) {
       u.push_back(x(e, m));
-      stored.push_back(stored_[e] * sizes_[e] * where_->room(e, &x(e, 0), u.back()));
+      stored.push_back((*stored_)[e] * sizes_[e] * where_->room(e, &x(e, 0), u.back()));
       for (int i = 0; i < n; ++i) {
         of_ends.push_back(x(e, m + 1 + i));
         flow.push_back(q(e, i));
@@ -289,7 +289,7 @@ class AdvectionModule final : public assembly::Module {
       if (where_->n_passed() > 0) where_->keep(*assembler_, at(state), state, state.history.back(), anew);
   }
 
-  bool corrects() const { return carried_.stored_in_cells != nullptr; }
+  bool corrects() const { return stored_.has_value(); }
   void bind_correction(const assembly::Context& context) {
     const auto& mesh = *context.mesh();
     block_ = context.field(rows()[0]);
@@ -312,8 +312,9 @@ class AdvectionModule final : public assembly::Module {
   std::unique_ptr<Where> where_;
   Carried carried_;
   std::unique_ptr<Assembler> assembler_;
-  std::vector<Real> stored_;  // [local entity] per volume and unit of u; this and the following for Antidiffusion only
-  std::vector<Real> sizes_;   // [local entity]
+  std::optional<std::vector<Real>> stored_;  // [local entity] per volume and unit of u; this and the following for
+                                             // Antidiffusion only
+  std::vector<Real> sizes_;                  // [local entity]
   std::unique_ptr<Antidiffusion> correction_;
   int block_ = -1;              // block of the corrected rows
   ConstView<LocalIndex*> row_;  // [owned entity]
@@ -321,14 +322,15 @@ class AdvectionModule final : public assembly::Module {
 };
 
 template <class Where>
-std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried, const std::vector<Real>& stored) {
+std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried,
+                                            const std::optional<std::vector<Real>>& stored) {
   return std::make_unique<AdvectionModule<Where>>(std::move(where), carried, stored);
 }
 
 }  // namespace
 
 std::unique_ptr<assembly::Module> make_advection(Shape shape, const FlowInRock& flow, const Carried& carried,
-                                                 const std::vector<Real>& stored) {
+                                                 const std::optional<std::vector<Real>>& stored) {
   return mesh::for_corners(shape, [&](auto s) {
     return flow.darcy.change ? module_of(InCells<s(), true>{flow.darcy, flow.stabilisation}, carried, stored)
                              : module_of(InCells<s(), false>{flow.darcy, flow.stabilisation}, carried, stored);
@@ -337,7 +339,7 @@ std::unique_ptr<assembly::Module> make_advection(Shape shape, const FlowInRock& 
 
 std::unique_ptr<assembly::Module> make_fracture_advection(Shape shape, const FractureFlowParameters& flow,
                                                           const Carried& carried, bool widens,
-                                                          const std::vector<Real>& stored) {
+                                                          const std::optional<std::vector<Real>>& stored) {
   return mesh::for_face_corners(shape, [&](auto s) {
     const auto make = [&](auto changes) {
       return widens ? module_of(InFractures<s(), true, changes()>{flow}, carried, stored)

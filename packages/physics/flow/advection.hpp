@@ -1,11 +1,13 @@
 // Advection of quantities that the fluid transports through rock and fractures.
 #pragma once
 
+#include "physics/carried.hpp"
 #include "physics/flow/fracture_flow.hpp"
 #include "physics/flow/stabilisation.hpp"
-#include "physics/physics.hpp"
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace sprekk::physics {
 
@@ -22,16 +24,16 @@ struct FlowInRock {
 /// The rows contain differences only: a uniform u stays uniform, even with an inaccurate flow solution. Outflow through
 /// a boundary without a condition on u carries u_K.
 ///
-/// `stored`: storage capacity of local cells per volume and unit of u, for Antidiffusion with implicit Euler; empty:
+/// `stored`: storage capacity of local cells per volume and unit of u, for Antidiffusion with implicit Euler; none:
 /// upwind only. History variables: those of Antidiffusion and StabilisedFlow.
 std::unique_ptr<assembly::Module> make_advection(mesh::Shape shape, const FlowInRock& flow, const Carried& carried,
-                                                 const std::vector<Real>& stored = {});
+                                                 const std::optional<std::vector<Real>>& stored = {});
 
 /// Creates the advection along fractures with the flow of FractureFlow through ridges. All flows into a ridge mix
 /// there. `widens`: apertures depend on "widening" of PoroelasticCoupling. `stored`: storage capacity of the filling of
 /// local fracture faces, per volume.
 std::unique_ptr<assembly::Module> make_fracture_advection(mesh::Shape shape, const FractureFlowParameters& flow,
                                                           const Carried& carried, bool widens,
-                                                          const std::vector<Real>& stored = {});
+                                                          const std::optional<std::vector<Real>>& stored = {});
 
 }  // namespace sprekk::physics

@@ -1,7 +1,7 @@
 // Checks of scenes with flow.
 #include "base/text.hpp"
 #include "physics/comparison.hpp"
-#include "physics/entry_of_place.hpp"
+#include "base/entry_of_place.hpp"
 
 #include <algorithm>
 
@@ -138,8 +138,7 @@ void compare_rock(Comparison& c, const Material& rock) {
 }  // namespace
 
 std::string Flow::no_error_estimate(const Scene& scene) {
-  if (has_unknown_pressure(scene) && !scene.flow)
-    return "is not available where a host program computes the pressure";
+  if (has_unknown_pressure(scene) && !scene.flow) return "is not available where a host program computes the pressure";
   if (!scene.flow) return "";
   const auto& flow = *scene.flow;
   const auto any = [](const auto& all, const auto& has) {

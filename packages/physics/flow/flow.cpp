@@ -14,7 +14,7 @@
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/poroelasticity/poroelasticity.hpp"
-#include "physics/entry_of_place.hpp"
+#include "base/entry_of_place.hpp"
 #include "physics/scene.hpp"
 #include "physics/storage.hpp"
 
@@ -113,8 +113,8 @@ std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
 }
 
 /// Quantities that the fluid transports for all physics of a scene.
-std::vector<Carried> carried_in(const Scene& scene) {
-  std::vector<Carried> all;
+std::vector<CarriedQuantity> carried_in(const Scene& scene) {
+  std::vector<CarriedQuantity> all;
   for_each_physics([&](auto physics) {
     for (auto& one : physics.carried(scene)) all.push_back(one);
   });
@@ -184,7 +184,7 @@ struct Parts {
 };
 
 /// Collects the parameters. Collective.
-Parts parts_of(const Setting& setting, const std::vector<Carried>& all_carried) {
+Parts parts_of(const Setting& setting, const std::vector<CarriedQuantity>& all_carried) {
   const auto& [scene, mesh, start] = setting;
   std::optional<FluidChange> change;
   for (const auto& carried : all_carried)
@@ -198,7 +198,7 @@ Parts parts_of(const Setting& setting, const std::vector<Carried>& all_carried) 
            .scheme = darcy.scheme,
            .fluid = darcy.fluid,
            .weight = darcy.weight,
-           .carried = all_carried};
+           .carried = {all_carried.begin(), all_carried.end()}};
   for (const auto& face : fractures.faces) {
     darcy.exchange.push_back(face.exchange);
     wells.faces.push_back(face.along);
@@ -273,7 +273,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   }
   const auto fluid = darcy.fluid;
   for (const auto& carried : all_carried) {
-    const auto stored = [&](const auto& find) { return find ? find(setting) : std::vector<Real>(); };
+    const auto stored = [&](const auto& find) { return find ? std::optional(find(setting)) : std::nullopt; };
     modules.push_back(
         make_advection(mesh.shape, {darcy, stabilisation(scene, mesh)}, carried, stored(carried.stored_in_cells)));
     if (!mesh.fracture_names.empty())

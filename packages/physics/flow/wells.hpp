@@ -5,8 +5,8 @@
 #include "base/expression.hpp"
 #include "laws/conduit.hpp"
 #include "laws/fluid.hpp"
+#include "physics/carried.hpp"
 #include "physics/flux_scheme.hpp"
-#include "physics/physics.hpp"
 
 #include <array>
 #include <memory>

@@ -4,7 +4,7 @@
 #include "mesh/extents.hpp"
 #include "physics/balance_error.hpp"
 #include "physics/comparison.hpp"
-#include "physics/entry_of_place.hpp"
+#include "base/entry_of_place.hpp"
 #include "physics/flow/fluid_flux.hpp"
 #include "physics/heat/fracture_heat.hpp"
 #include "physics/heat/overshoot.hpp"
@@ -317,11 +317,14 @@ std::unique_ptr<MeshError> Heat::mesh_error(const Setting& setting, assembly::Sy
   return make_balance_error(system, std::move(parameters));
 }
 
-std::vector<Carried> Heat::carried(const Scene& scene) {
+std::vector<CarriedQuantity> Heat::carried(const Scene& scene) {
   if (!scene.heat || !scene.heat->fluid_capacity) return {};
-  Carried energy{
-      .field = "temperature", .capacity = *scene.heat->fluid_capacity, .total = "heat", .unit = "W", .in_wells = {}};
-  energy.change = scene.heat->fluid_change();
+  CarriedQuantity energy{{.field = "temperature",
+                          .capacity = *scene.heat->fluid_capacity,
+                          .total = "heat",
+                          .unit = "W",
+                          .in_wells = {},
+                          .change = scene.heat->fluid_change()}};
   if (scene.heat->advection == "second order") {
     energy.stored_in_cells = [](const Setting& setting) {
       std::vector<Real> all;

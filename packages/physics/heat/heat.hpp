@@ -84,7 +84,7 @@ struct Heat : Physics<Heat> {
   static std::vector<QuantityKind> quantities();
   static std::string refuses(const Scene& scene, const Functional& J);
   static std::unique_ptr<MeshError> mesh_error(const Setting& setting, assembly::System& system);
-  static std::vector<Carried> carried(const Scene& scene);
+  static std::vector<CarriedQuantity> carried(const Scene& scene);
   static std::string takes_friction_power(const Scene& scene);
   /// Name of the entry that is incompatible with BDF2; empty: none.
   static std::string needs_implicit_euler(const Scene& scene);

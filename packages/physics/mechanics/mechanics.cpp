@@ -7,7 +7,7 @@
 #include "physics/mechanics/release.hpp"
 #include "physics/mechanics/solid_pressure.hpp"
 #include "physics/mechanics/uniqueness.hpp"
-#include "physics/entry_of_place.hpp"
+#include "base/entry_of_place.hpp"
 #include "physics/scene.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "mesh/extents.hpp"
-#include "physics/entry_of_place.hpp"
+#include "base/entry_of_place.hpp"
 #include "physics/scene.hpp"
 
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
-#include "physics/entry_of_place.hpp"
+#include "base/entry_of_place.hpp"
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 #include "physics/scene.hpp"
 

@@ -11,38 +11,36 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::base {
 
-inline bool is_zero(const base::Expression& value) { return value.is_constant() && value({}, 0) == 0; }
+inline bool is_zero(const Expression& value) { return value.is_constant() && value({}, 0) == 0; }
 
-inline void check_constant_in_time(base::Section& s, const std::string& entry, const base::Expression& value) {
+inline void check_constant_in_time(Section& s, const std::string& entry, const Expression& value) {
   if (!value.constant_in_time())
     s.fail(entry, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value.text()));
 }
-inline void check_constant_in_time(base::Section& s, const std::string& entry,
-                                   const std::optional<base::Expression>& value) {
+inline void check_constant_in_time(Section& s, const std::string& entry, const std::optional<Expression>& value) {
   if (value) check_constant_in_time(s, entry, *value);
 }
-inline void check_constant_in_time(base::Section& s, const std::string& entry,
-                                   const std::vector<base::Expression>& values) {
+inline void check_constant_in_time(Section& s, const std::string& entry, const std::vector<Expression>& values) {
   for (const auto& value : values) check_constant_in_time(s, entry, value);
 }
 
 /// Declares an entry that may depend on x, y, z, but not on t. T: Expression, optional Expression, or a vector of them.
 template <class T>
-void entry_of_place(base::Section& s, T& target, const std::string& name, const std::string& unit,
-                    const base::Bounds& bounds, const std::string& meaning) {
+void entry_of_place(Section& s, T& target, const std::string& name, const std::string& unit, const Bounds& bounds,
+                    const std::string& meaning) {
   s.entry(target, name, unit, bounds, meaning);
   check_constant_in_time(s, name, target);
 }
 
 /// Value of an entry at x. Throws an Error if the value is out of bounds. Constants were checked when they were read.
-inline Real value_at(const std::string& name, const base::Expression& value, const base::Bounds& bounds,
+inline Real value_at(const std::string& name, const Expression& value, const Bounds& bounds,
                      const std::array<Real, 3>& x) {
   const Real v = value(x, 0);
   SPREKK_CHECK(value.is_constant() || bounds.contains(v), "\"{}\" = {} is {} at ({}, {}, {}), must be {}", name,
-               base::shortened(value.text()), v, x[0], x[1], x[2], bounds.text());
+               shortened(value.text()), v, x[0], x[1], x[2], bounds.text());
   return v;
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::base
