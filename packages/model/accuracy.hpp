@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/types.hpp"
-#include "physics/mesh_error.hpp"
+#include "estimate/mesh_error.hpp"
 
 #include <map>
 #include <optional>

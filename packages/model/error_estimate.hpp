@@ -3,7 +3,7 @@
 
 #include "model/model.hpp"
 #include "physics/mechanics/stress_recovery.hpp"
-#include "physics/step_rates.hpp"
+#include "estimate/step_rates.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 
 #include "assembly/constraints.hpp"
 #include "base/text.hpp"
-#include "physics/outflow.hpp"
+#include "transport/outflow.hpp"
 #include "physics/scene.hpp"
 
 #include <algorithm>

@@ -5,8 +5,8 @@
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
 #include "mesh/mesh.hpp"
-#include "physics/carried.hpp"
-#include "physics/mesh_error.hpp"
+#include "transport/carried.hpp"
+#include "estimate/mesh_error.hpp"
 
 #include <functional>
 #include <memory>

@@ -5,7 +5,7 @@
 #include "base/table.hpp"
 #include "mesh/facets.hpp"
 #include "physics/list.hpp"
-#include "physics/properties.hpp"
+#include "fields/properties.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,5 @@
 // Elasticity and flow in random cells.
-#include "physics/flow/changed_flow.hpp"
+#include "transport/changed_flow.hpp"
 #include "physics/mechanics/elastic_cell.hpp"
 #include "report.hpp"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles the kernels of packages/physics and packages/assembly, and their laws, for a GPU, without execution.
+"""Compiles the kernels of packages/assembly, transport and physics, and their laws, for a GPU, without execution.
 
     check_device.py ROOT [--for hip|cuda] [--kokkos CHECKOUT] [FILE...]
         all files with kernels, or the given ones; exit status 1: errors, 77: skipped
@@ -146,7 +146,7 @@ def main():
         skip(f"no Kokkos in {TRILINOS}; SPREKK_TRILINOS_INCLUDE names another folder")
     if arguments.kokkos and not (Path(arguments.kokkos) / "core/src/Kokkos_Core.hpp").exists():
         sys.exit(f"{arguments.kokkos}: no checkout of Kokkos")
-    files = arguments.files or [f for package in ("assembly", "physics") for f in sorted(packages.glob(f"{package}/**/*.cpp"))
+    files = arguments.files or [f for package in ("assembly", "transport", "physics") for f in sorted(packages.glob(f"{package}/**/*.cpp"))
                                 if HAS_KERNELS.search(f.read_text())]
     command = compiler(arguments.back_end) + ["-std=c++20", "-w", "-DFMT_SHARED", f"-I{packages}"]
     with tempfile.TemporaryDirectory() as name:

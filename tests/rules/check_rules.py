@@ -16,11 +16,13 @@ USES = {
     "fields": "base mesh",
     "contact": "base mesh fields",
     "assembly": "base mesh fields contact",
-    "physics": "base laws mesh fields contact assembly",
+    "estimate": "base mesh fields assembly",
+    "transport": "base laws mesh fields assembly estimate",
+    "physics": "base laws mesh fields contact assembly estimate transport",
     "multigrid": "base fields",
     "solve": "base fields multigrid",
     "io": "base mesh fields",
-    "model": "base laws mesh fields contact assembly physics multigrid solve io",
+    "model": "base laws mesh fields contact assembly estimate transport physics multigrid solve io",
 }
 FOLDERS = ["packages", "apps", "tests", "xml", "perf", "docs", "cmake", ".ci"]  # and the files in the root folder
 SOURCES = {".hpp", ".cpp", ".h"}
@@ -34,7 +36,7 @@ TRILINOS_COMPAT = "packages/base/trilinos_compat.hpp"  # and its test
 
 # Packages independent of the physics, checked by words of the present physics. The second expression lists exceptions:
 # coupling of assembly and contact, point driver and error estimate.
-GENERIC = {"base", "mesh", "fields", "assembly", "multigrid", "solve", "io", "model"}
+GENERIC = {"base", "mesh", "fields", "assembly", "estimate", "multigrid", "solve", "io", "model"}
 PHYSICS = re.compile(
     r"\b(?:pressures?|fluids?|tractions?|friction|temperatures?|heat|dilation|apertures?|biot|permeability|porosity"
     r"|viscosity)\b", re.IGNORECASE)
@@ -50,7 +52,7 @@ NOT_IN_KERNELS = re.compile(
     r"|(?:\.|->)data\s*\(\s*\)|\bthrow\b|\bSPREKK_(?:DEBUG_)?CHECK\b|\bfmt::|\bTeuchos::"
     r"|\b(?:create_mirror\w*|deep_copy|getLocalView\w*)\b")
 # Packages whose kernels must compile for a GPU, see tests/device. Other code is host code or declares it.
-ON_DEVICE = {"laws", "physics", "assembly"}
+ON_DEVICE = {"laws", "transport", "physics", "assembly"}
 # Extensions of compilers, and the files that may use them.
 COMPILERS = re.compile(r"\b__(?:builtin_\w+|attribute__|declspec)\b|\b_mm\d*_\w+")
 KNOW_COMPILERS = {"packages/fields/node_kernels.hpp", "packages/multigrid/rounded_matrix.hpp",

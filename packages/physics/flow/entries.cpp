@@ -1,7 +1,7 @@
 // Scene entries of flow.
 #include "physics/flow/flow.hpp"
 #include "base/entry_of_place.hpp"
-#include "physics/tensor_entry.hpp"
+#include "transport/tensor_entry.hpp"
 
 #include <algorithm>
 #include <cmath>

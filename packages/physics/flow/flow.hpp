@@ -3,10 +3,10 @@
 
 #include "base/expression.hpp"
 #include "laws/darcy.hpp"
-#include "physics/flux_scheme.hpp"
+#include "transport/flux_scheme.hpp"
 #include "physics/physics.hpp"
-#include "physics/properties.hpp"
-#include "physics/storage.hpp"
+#include "fields/properties.hpp"
+#include "transport/storage.hpp"
 
 #include <limits>
 #include <map>

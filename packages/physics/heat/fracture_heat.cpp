@@ -2,7 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "mesh/facets.hpp"
-#include "physics/flow/face_plane.hpp"
+#include "transport/face_plane.hpp"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
 #include "laws/fluid.hpp"
-#include "physics/fluid_change.hpp"
-#include "physics/flux_scheme.hpp"
+#include "transport/fluid_change.hpp"
+#include "transport/flux_scheme.hpp"
 
 #include <memory>
 #include <optional>

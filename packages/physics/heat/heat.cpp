@@ -2,7 +2,7 @@
 
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
-#include "physics/balance_error.hpp"
+#include "transport/balance_error.hpp"
 #include "physics/comparison.hpp"
 #include "base/entry_of_place.hpp"
 #include "physics/flow/fluid_flux.hpp"
@@ -10,9 +10,9 @@
 #include "physics/heat/overshoot.hpp"
 #include "physics/heat/temperatures.hpp"
 #include "physics/heat/thermal_expansion.hpp"
-#include "physics/hybrid_diffusion.hpp"
-#include "physics/storage.hpp"
-#include "physics/tensor_entry.hpp"
+#include "transport/hybrid_diffusion.hpp"
+#include "transport/storage.hpp"
+#include "transport/tensor_entry.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
-#include "physics/coupling_volumes.hpp"
-#include "physics/volume_work.hpp"
+#include "physics/mechanics/coupling_volumes.hpp"
+#include "physics/mechanics/volume_work.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "assembly/module.hpp"
 #include "laws/elasticity.hpp"
 #include "physics/mechanics/loads.hpp"
-#include "physics/properties.hpp"
+#include "fields/properties.hpp"
 
 #include <memory>
 #include <optional>

@@ -6,7 +6,7 @@
 #include "physics/mechanics/joint_material.hpp"
 #include "physics/mechanics/loads.hpp"
 #include "physics/physics.hpp"
-#include "physics/properties.hpp"
+#include "fields/properties.hpp"
 
 #include <optional>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "assembly/module.hpp"
 #include "laws/elasticity.hpp"
-#include "physics/properties.hpp"
+#include "fields/properties.hpp"
 
 #include <memory>
 

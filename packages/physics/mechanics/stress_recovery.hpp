@@ -3,7 +3,7 @@
 
 #include "fields/layout.hpp"
 #include "laws/elasticity.hpp"
-#include "physics/properties.hpp"
+#include "fields/properties.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>

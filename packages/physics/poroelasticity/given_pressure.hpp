@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assembly/system.hpp"
-#include "physics/properties.hpp"
+#include "fields/properties.hpp"
 
 #include <memory>
 #include <vector>

@@ -4,9 +4,9 @@
 #include "assembly/term.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-#include "physics/coupling_volumes.hpp"
-#include "physics/hybrid_diffusion.hpp"
-#include "physics/volume_work.hpp"
+#include "physics/mechanics/coupling_volumes.hpp"
+#include "transport/hybrid_diffusion.hpp"
+#include "physics/mechanics/volume_work.hpp"
 
 #include <algorithm>
 

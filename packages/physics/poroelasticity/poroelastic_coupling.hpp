@@ -2,8 +2,8 @@
 #pragma once
 
 #include "assembly/module.hpp"
-#include "physics/flow/stabilisation.hpp"
-#include "physics/properties.hpp"
+#include "transport/stabilisation.hpp"
+#include "fields/properties.hpp"
 
 #include <memory>
 #include <vector>

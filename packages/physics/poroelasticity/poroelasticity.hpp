@@ -1,7 +1,7 @@
 // Coupling of flow and mechanics in scenes with both.
 #pragma once
 
-#include "physics/flow/stabilisation.hpp"
+#include "transport/stabilisation.hpp"
 #include "physics/physics.hpp"
 #include "physics/poroelasticity/given_pressure.hpp"
 

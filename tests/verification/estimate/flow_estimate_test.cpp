@@ -1,7 +1,7 @@
 // Error estimates of flow, compared with exact solutions.
 #include "base/over_ranks.hpp"
 #include "model/goals.hpp"
-#include "physics/flow/face_plane.hpp"
+#include "transport/face_plane.hpp"
 #include "verification/flow/boxes.hpp"
 
 #include <numeric>

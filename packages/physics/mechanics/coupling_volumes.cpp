@@ -1,0 +1,138 @@
+#include "physics/mechanics/coupling_volumes.hpp"
+
+#include "assembly/geometry.hpp"
+#include "assembly/loop.hpp"
+#include "assembly/reference_cell.hpp"
+#include "assembly/tip_cell.hpp"
+
+#include <memory>
+
+namespace sprekk::physics {
+
+namespace {
+
+template <mesh::Shape shape>
+View<Real**> cell_volumes_of(const mesh::Mesh& mesh, const OfCell& biot) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  const View<Real**> volume("volume", mesh.n_cells(), n * dim);
+  const auto host = Kokkos::create_mirror_view(volume);
+  Real X[n][dim], dN[n][dim], g[dim];
+  for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
+    assembly::gather_host<shape>(mesh, c, X);
+    assembly::for_each_cell_point<shape>(mesh, c, [&](const Real(&xi)[dim], Real part, const auto&) {
+      assembly::ReferenceCell<shape>::gradients(xi, dN);
+      const assembly::CellPoint<shape> point(X, dN);
+      for (int a = 0; a < n; ++a) {
+        point.gradient(dN[a], g);
+        for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * biot(c) * g[i];
+      }
+    });
+  }
+  Kokkos::deep_copy(volume, host);
+  return volume;
+}
+
+template <mesh::Shape shape>
+View<Real**> bubble_volumes_of(const mesh::Mesh& mesh, const OfCell& biot) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  using Cell = assembly::ReferenceCell<shape>;
+  const auto sides = assembly::fracture_sides(mesh);
+  const View<Real**> volume("volume", sides.size(), dim);
+  const auto host = Kokkos::create_mirror_view(volume);
+  Real X[n][dim], dN[n][dim], db[dim], g[dim];
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const auto& face = mesh.fracture_faces[sides[s][0]];
+    const LocalIndex cell = face.cell[sides[s][1]];
+    assembly::gather_host<shape>(mesh, cell, X);
+    assembly::for_each_cell_point<shape>(mesh, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
+      Cell::gradients(xi, dN);
+      Cell::bubble(face.local_face[sides[s][1]], xi, db);
+      assembly::CellPoint<shape>(X, dN).gradient(db, g);
+      for (int i = 0; i < dim; ++i) host(s, i) += part * biot(cell) * g[i];
+    });
+  }
+  Kokkos::deep_copy(volume, host);
+  return volume;
+}
+
+template <mesh::Shape shape>
+View<Real**> tip_cell_volumes_of(const mesh::Mesh& mesh, const OfCell& biot) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  const auto cells = assembly::tip_cells(mesh);
+  const View<Real**> volume("volume", cells.size(), n * dim);
+  const auto host = Kokkos::create_mirror_view(volume);
+  const auto rules = std::make_shared<assembly::TipRules>();
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    assembly::TipCell<shape>(mesh, cells[c], rules)
+        .for_each_point([&](const auto&, Real part, const auto&, const auto& v) {
+          for (int a = 0; a < n; ++a)
+            for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * biot(cells[c]) * v.grad_psi[a][i];
+        });
+  Kokkos::deep_copy(volume, host);
+  return volume;
+}
+
+template <mesh::Shape shape>
+View<Real**> tip_side_volumes_of(const mesh::Mesh& mesh) {
+  constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
+  const auto all = assembly::fracture_sides(mesh);
+  const auto selected = assembly::tip_sides(mesh);
+  const View<Real**> volume("volume", selected.size(), n * dim);
+  const auto host = Kokkos::create_mirror_view(volume);
+  using Tip = assembly::TipCell<shape>;
+  const auto rules = std::make_shared<assembly::TipRules>();
+  for (std::size_t s = 0; s < selected.size(); ++s) {
+    const auto [f, side] = all[selected[s]];
+    const auto& face = mesh.fracture_faces[f];
+    const auto means = Tip(mesh, face.cell[side], rules).face_means(face.local_face[side]);
+    for (int k = 0; k < Tip::n_face; ++k)
+      for (int i = 0; i < dim; ++i)
+        host(s, mesh::face_nodes(shape)[face.local_face[side]][k] * dim + i) =
+            (side == mesh::plus ? face.area : -face.area) * means[k] * face.frame[0][i];
+  }
+  Kokkos::deep_copy(volume, host);
+  return volume;
+}
+
+}  // namespace
+
+View<Real**> cell_volumes(const mesh::Mesh& mesh, const OfCell& biot) {
+  return mesh::for_shape(mesh.shape, [&](auto shape) { return cell_volumes_of<shape()>(mesh, biot); });
+}
+
+View<Real**> bubble_volumes(const mesh::Mesh& mesh, const OfCell& biot) {
+  return mesh::for_shape(mesh.shape, [&](auto shape) { return bubble_volumes_of<shape()>(mesh, biot); });
+}
+
+View<Real**> side_volumes(const mesh::Mesh& mesh) {
+  const int dim = mesh.dim(), n = mesh.nodes_per_cell();
+  const auto sides = assembly::fracture_sides(mesh);
+  const View<Real**> volume("volume", sides.size(), n * dim + dim);
+  const auto host = Kokkos::create_mirror_view(volume);
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const auto [f, side] = sides[s];
+    const auto& face = mesh.fracture_faces[f];
+    const LocalIndex cell = face.cell[side];
+    const int local_face = face.local_face[side];
+    const Real area = side == mesh::plus ? face.area : -face.area;
+    const auto shares = assembly::mean_shares(mesh, cell, local_face);
+    const Real mean = assembly::bubble_mean(mesh, cell, local_face);
+    for (int i = 0; i < dim; ++i) {
+      for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k)
+        host(s, mesh::face_nodes(mesh.shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
+      host(s, n * dim + i) = area * mean * face.frame[0][i];
+    }
+  }
+  Kokkos::deep_copy(volume, host);
+  return volume;
+}
+
+View<Real**> tip_cell_volumes(const mesh::Mesh& mesh, const OfCell& biot) {
+  return mesh::for_corners(mesh.shape, [&](auto shape) { return tip_cell_volumes_of<shape()>(mesh, biot); });
+}
+
+View<Real**> tip_side_volumes(const mesh::Mesh& mesh) {
+  return mesh::for_corners(mesh.shape, [&](auto shape) { return tip_side_volumes_of<shape()>(mesh); });
+}
+
+}  // namespace sprekk::physics

@@ -1,0 +1,352 @@
+#include "transport/advection.hpp"
+
+#include "transport/antidiffusion.hpp"
+#include "transport/fracture_faces.hpp"
+#include "transport/hybrid_rock.hpp"
+
+namespace sprekk::physics {
+
+using assembly::Loop;
+
+namespace {
+
+/// | symbol   | shape | unit         |                                                        |
+/// | x        | m + 1 + n | Pa, m, U | unknowns of the flow [m], u of the entity and its ends |
+/// | r        | 1 + n | Q/s          | for energy W                                           |
+/// | q        | n     | m^3/s        | outward flow through ends (2D: m^2/s)                  |
+/// | capacity |       | Q/(m^3 U)    | c                                                      |
+template <class Flow, class Carried>
+struct Advection {
+  static constexpr int n = Flow::n_ends, m = Flow::Columns::size;
+  using Columns = typename Joined<typename Flow::Columns, Carried>::Slots;
+  using Rows = Carried;
+  static_assert(Rows::size == 1 + n);
+  Flow flow;
+  Real capacity;
+
+  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 1 + n], Real (&r)[1 + n]) const {
+    Real q[n], dq[n][m];
+    find_flow(e, x, q, dq);
+    r[0] = 0;
+    for (int i = 0; i < n; ++i) {
+      const Real rise = capacity * q[i] * (x[m + 1 + i] - x[m]);  // along the outward flow
+      r[0] += q[i] < 0 ? rise : 0;
+      r[1 + i] = q[i] > 0 ? rise : 0;
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[m + 1 + n], Real (&J)[1 + n][m + 1 + n]) const {
+    Real q[n], dq[n][m];
+    find_flow(e, x, q, dq);
+    for (auto& row : J)
+      for (Real& value : row) value = 0;
+    for (int i = 0; i < n; ++i) {
+      if (q[i] == 0) continue;
+      Real(&row)[m + 1 + n] = J[q[i] > 0 ? 1 + i : 0];
+      for (int k = 0; k < m; ++k) row[k] += capacity * dq[i][k] * (x[m + 1 + i] - x[m]);
+      row[m] -= capacity * q[i];
+      row[m + 1 + i] += capacity * q[i];
+    }
+  }
+
+ private:
+  /// Computes the flows. Flows at the level of round-off, e.g. through a closed end, are set to zero. They would
+  /// otherwise transport the value of one side or the other, depending on the iterate.
+  KOKKOS_INLINE_FUNCTION void find_flow(int e, const Real (&x)[m + 1 + n], Real (&q)[n], Real (&dq)[n][m]) const {
+    constexpr Real rounding = 64 * 2.2e-16;
+    Real drivers[m];
+    for (int k = 0; k < m; ++k) drivers[k] = x[k];
+    flow.flow(e, drivers, q);
+    flow.dflow(e, drivers, dq);
+    for (int i = 0; i < n; ++i) {
+      Real sum = 0;
+      for (int k = 0; k < m; ++k) sum += dq[i][k] * x[k] < 0 ? -dq[i][k] * x[k] : dq[i][k] * x[k];
+      if ((q[i] < 0 ? -q[i] : q[i]) <= rounding * sum) q[i] = 0;
+    }
+  }
+};
+
+/// Flow in cells.
+template <Shape shape, bool changes>
+struct InCells {
+  using Cell = HybridCell<shape>;
+  using Fluid = std::conditional_t<changes, ChangedFlow<Cell>, Cell>;
+  using Flow = StabilisedFlow<Fluid, shape>;
+  using Carried = typename Cell::Columns;
+  static constexpr Loop loop = Loop::cells;
+  static constexpr bool has_passed = true;
+  HybridDiffusionParameters parameters;
+  Stabilisation stabilisation;
+  std::unique_ptr<Cell> cell = {};
+  std::unique_ptr<fields::Layout> of_faces = {};
+  StabilisingFlow<shape> volumes = {};
+  View<Real**> passed = {};  // [local cell] as in StabilisedFlow
+
+  std::vector<std::string> drivers() const {
+    std::vector<std::string> fields = {parameters.field, "face " + parameters.field};
+    if (changes) fields.push_back(parameters.change->field);
+    return fields;
+  }
+  std::vector<std::string> carried(const std::string& field) const { return {field, "face " + field}; }
+  std::string place() const { return ""; }
+  static constexpr auto entity = fields::Entity::cell;
+  static EndGraph graph(const mesh::Mesh& mesh) { return end_graph_of_cells(mesh); }
+  static LocalIndex row(const mesh::Mesh&, LocalIndex cell) { return cell; }
+  static std::vector<Real> sizes(const mesh::Mesh& mesh) { return assembly::cell_volumes(mesh); }
+  /// Storage volume per size of the entity, m^3.
+  Real room(LocalIndex, const Real*, Real) const { return 1; }
+  /// Number of columns of the history "passed"; 0 without stabilisation.
+  int n_passed() const { return stabilisation.softness.empty() ? 0 : 2 * Flow::n; }
+  void bind(const assembly::Context& context) {
+    cell = std::make_unique<Cell>(hybrid_cell<shape>(context, parameters));
+    if (n_passed() == 0) return;
+    volumes = stabilising_flow<shape>(*context.mesh(), stabilisation);
+    of_faces = std::make_unique<fields::Layout>(fields::Field{"passed", entity, n_passed(), ""}, *context.mesh());
+    passed = View<Real**>("passed", context.mesh()->n_cells(), n_passed());
+  }
+  /// Copies the history to local cells. Collective.
+  void start_step(const View<Real**>& kept) {
+    const auto own = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), kept);
+    std::vector<Real> owned;
+    for (std::size_t e = 0; e < own.extent(0); ++e)
+      for (int k = 0; k < n_passed(); ++k) owned.push_back(own(e, k));
+    const auto all = with_ghosts(*of_faces, owned);
+    const auto host = Kokkos::create_mirror_view(passed);
+    for (std::size_t e = 0; e < host.extent(0); ++e)
+      for (int k = 0; k < n_passed(); ++k) host(e, k) = all[e * n_passed() + k];
+    Kokkos::deep_copy(passed, host);
+  }
+  /// Updates the history. `anew` sets the volume of the last step to zero; a run starts with this value.
+  template <class Assembler, class Op>
+  void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& kept,
+            bool anew) const {
+    const auto n_owned = static_cast<int>(kept.extent(0));
+    const auto flow = volumes;
+    assembler.for_each(
+        op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::Columns::size]) {
+          if (e >= n_owned) return;
+          Real p[1 + Flow::n], V[Flow::n];
+          for (int k = 0; k <= Flow::n; ++k) p[k] = x[k];
+          flow.flow(e, p, V);
+          for (int i = 0; i < Flow::n; ++i) {
+            kept(e, Flow::n + i) = anew ? 0 : V[i] - kept(e, i);
+            kept(e, i) = V[i];
+          }
+        });
+  }
+  Flow at(const assembly::State& state) const {
+    if constexpr (changes)
+      return {{*cell, parameters.change->response}, volumes, passed, state.rate, state.before};
+    else
+      return {*cell, volumes, passed, state.rate, state.before};
+  }
+};
+
+/// Flow along fracture faces.
+template <Shape shape, bool widens, bool changes>
+struct InFractures {
+  static constexpr int n = FractureFaces<shape>::n;
+  using Face = FractureFace<n>;
+  using Fluid = std::conditional_t<changes, ChangedFlow<Face>, Face>;
+  using Flow = std::conditional_t<widens, WideningFace<Fluid>, Fluid>;
+  using Carried = assembly::Slots<assembly::Slot<1 + n, 1>>;
+  static constexpr Loop loop = Loop::fracture_cells;
+  static constexpr bool has_passed = false;
+  FractureFlowParameters parameters;
+  std::unique_ptr<FractureFaces<shape>> faces = {};
+
+  std::vector<std::string> drivers() const { return physics::drivers(parameters, widens); }
+  std::vector<std::string> carried(const std::string& field) const { return {"face " + field}; }
+  std::string place() const { return " in fractures"; }
+  static constexpr auto entity = fields::Entity::fracture_face;
+  static EndGraph graph(const mesh::Mesh& mesh) { return end_graph_of_fractures(mesh); }
+  static LocalIndex row(const mesh::Mesh& mesh, LocalIndex face) { return mesh.facets->fracture_face[face]; }
+  static std::vector<Real> sizes(const mesh::Mesh& mesh) {
+    std::vector<Real> areas;
+    for (const auto& face : mesh.fracture_faces) areas.push_back(face.area);
+    return areas;
+  }
+  /// Storage volume at reference conditions per size of the face, m^3. The drivers of the flow start with p_F and end
+  /// with the widening.
+  Real room(LocalIndex face, const Real* drivers, Real u) const {
+    const Real aperture =
+        parameters.faces[face].along.mechanical_aperture(widens ? drivers[Flow::Columns::size - 1] : 0);
+    return aperture * parameters.fluid.density(drivers[0]) *
+           (changes ? parameters.change->response.density(u).value : 1);
+  }
+  void bind(const assembly::Context& context) {
+    faces = std::make_unique<FractureFaces<shape>>(context.mesh(), context.layout(context.field("face pressure")),
+                                                   parameters, widens);
+  }
+  Flow at(const assembly::State& state) const {
+    if constexpr (widens)
+      return {fluid(), {faces->conduits(), state.coefficients}};
+    else
+      return fluid();
+  }
+  Fluid fluid() const {
+    if constexpr (changes)
+      return {faces->op(), parameters.change->response};
+    else
+      return faces->op();
+  }
+};
+
+template <class Where>
+class AdvectionModule final : public assembly::Module {
+ public:
+  AdvectionModule(Where where, const Carried& carried, std::optional<std::vector<Real>> stored)
+      : where_(std::make_unique<Where>(std::move(where))), carried_(carried), stored_(std::move(stored)) {}
+
+  std::string name() const override { return "advection of " + carried_.field + where_->place(); }
+
+  assembly::Declaration declare(const mesh::Mesh&) const override {
+    assembly::Declaration d;
+    for (const auto& row : rows()) d.couplings.push_back({Where::loop, row, columns()});
+    d.carries = rows();
+    if (corrects()) d.history.push_back({"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_kept(n)});
+    if constexpr (Where::has_passed)
+      if (where_->n_passed() > 0) d.history.push_back({"passed", Where::entity, where_->n_passed()});
+    return d;
+  }
+
+  void bind(const assembly::Context& context) override {
+    const auto numbers = [&](const auto& names) {
+      std::vector<int> blocks;
+      for (const auto& name : names) blocks.push_back(context.field(name));
+      return blocks;
+    };
+    assembler_ = std::make_unique<Assembler>(context, Where::loop, numbers(rows()), numbers(columns()),
+                                             Assembler::Positions::keep);
+    where_->bind(context);
+    if (corrects()) bind_correction(context);
+  }
+
+  void residual(const assembly::State& state, const assembly::Rows& r) const override {
+    assembler_->add_residual(at(state), state, r);
+    if (!corrects()) return;
+    const auto rows = r[block_];
+    const auto row = row_;
+    const auto gains = gains_;
+    const Real rate = state.rate;
+    Kokkos::parallel_for(
+        "antidiffusion", Kokkos::RangePolicy<Execution>(0, gains.extent(0)),
+        KOKKOS_LAMBDA(int e) { rows(row(e)) -= rate * gains(e); });
+  }
+  void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
+    assembler_->add_jacobian(at(state), state, J);
+  }
+  bool symmetric(const assembly::State&) const override { return false; }
+
+  void start_step(const assembly::State& state) override {
+    if (corrects())
+      gains_ = assembly::to_device(
+          correction_->gains(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0])), "gains");
+    if constexpr (Where::has_passed)
+      if (where_->n_passed() > 0) where_->start_step(state.history.back());
+  }
+  void take_over(assembly::State& state) const override { keep_passed(state, true); }
+  void commit(assembly::State& state) const override {
+    if (corrects()) commit_correction(state);
+    keep_passed(state, false);
+  }
+
+  /// Stores the flux correction of the step in the history.
+  void commit_correction(const assembly::State& state) const {
+    const View<Real**> found("found", assembler_->n_entities(), Op::Columns::size), flows("flows", found.extent(0), n);
+    const auto op = at(state);
+    assembler_->for_each(
+        op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::Columns::size]) {
+          Real drivers[m], q[n];
+          for (int k = 0; k < Op::Columns::size; ++k) found(e, k) = x[k];
+          for (int k = 0; k < m; ++k) drivers[k] = x[k];
+          op.flow.flow(e, drivers, q);
+          for (int i = 0; i < n; ++i) flows(e, i) = op.capacity * q[i];
+        });
+    const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), found);
+    const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), flows);
+    std::vector<Real> u, of_ends, flow, stored;
+    for (LocalIndex e = 0; e < assembler_->n_entities(); ++e) {
+      u.push_back(x(e, m));
+      stored.push_back((*stored_)[e] * sizes_[e] * where_->room(e, &x(e, 0), u.back()));
+      for (int i = 0; i < n; ++i) {
+        of_ends.push_back(x(e, m + 1 + i));
+        flow.push_back(q(e, i));
+      }
+    }
+    const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
+    correction_->keep(u, of_ends, flow, stored, state.rate > 0 ? 1 / state.rate : 0, kept);
+    Kokkos::deep_copy(state.history[0], kept);
+  }
+
+ private:
+  using Op = Advection<typename Where::Flow, typename Where::Carried>;
+  using Assembler = assembly::Assembler<Op>;
+  static constexpr int n = Op::n, m = Op::m;
+
+  void keep_passed(const assembly::State& state, bool anew) const {
+    if constexpr (Where::has_passed)
+      if (where_->n_passed() > 0) where_->keep(*assembler_, at(state), state, state.history.back(), anew);
+  }
+
+  bool corrects() const { return stored_.has_value(); }
+  void bind_correction(const assembly::Context& context) {
+    const auto& mesh = *context.mesh();
+    block_ = context.field(rows()[0]);
+    sizes_ = Where::sizes(mesh);
+    correction_ = std::make_unique<Antidiffusion>(mesh, Where::entity, Where::graph(mesh));
+    std::vector<LocalIndex> rows;
+    for (LocalIndex e = 0; e < fields::n_entities(mesh, Where::entity, false); ++e) rows.push_back(Where::row(mesh, e));
+    row_ = assembly::to_device(rows, "rows");
+    gains_ = assembly::to_device(std::vector<Real>(rows.size(), 0), "gains");
+  }
+
+  Op at(const assembly::State& state) const { return {where_->at(state), carried_.capacity}; }
+  std::vector<std::string> rows() const { return where_->carried(carried_.field); }
+  std::vector<std::string> columns() const {
+    auto names = where_->drivers();
+    for (const auto& name : rows()) names.push_back(name);
+    return names;
+  }
+
+  std::unique_ptr<Where> where_;
+  Carried carried_;
+  std::unique_ptr<Assembler> assembler_;
+  std::optional<std::vector<Real>> stored_;  // [local entity] per volume and unit of u; this and the following for
+                                             // Antidiffusion only
+  std::vector<Real> sizes_;                  // [local entity]
+  std::unique_ptr<Antidiffusion> correction_;
+  int block_ = -1;              // block of the corrected rows
+  ConstView<LocalIndex*> row_;  // [owned entity]
+  ConstView<Real*> gains_;      // [owned entity] gains at the start of the step
+};
+
+template <class Where>
+std::unique_ptr<assembly::Module> module_of(Where where, const Carried& carried,
+                                            const std::optional<std::vector<Real>>& stored) {
+  return std::make_unique<AdvectionModule<Where>>(std::move(where), carried, stored);
+}
+
+}  // namespace
+
+std::unique_ptr<assembly::Module> make_advection(Shape shape, const FlowInRock& flow, const Carried& carried,
+                                                 const std::optional<std::vector<Real>>& stored) {
+  return mesh::for_corners(shape, [&](auto s) {
+    return flow.darcy.change ? module_of(InCells<s(), true>{flow.darcy, flow.stabilisation}, carried, stored)
+                             : module_of(InCells<s(), false>{flow.darcy, flow.stabilisation}, carried, stored);
+  });
+}
+
+std::unique_ptr<assembly::Module> make_fracture_advection(Shape shape, const FractureFlowParameters& flow,
+                                                          const Carried& carried, bool widens,
+                                                          const std::optional<std::vector<Real>>& stored) {
+  return mesh::for_face_corners(shape, [&](auto s) {
+    const auto make = [&](auto changes) {
+      return widens ? module_of(InFractures<s(), true, changes()>{flow}, carried, stored)
+                    : module_of(InFractures<s(), false, changes()>{flow}, carried, stored);
+    };
+    return flow.change ? make(std::true_type()) : make(std::false_type());
+  });
+}
+
+}  // namespace sprekk::physics
