@@ -10,7 +10,7 @@ namespace sprekk::assembly {
 struct Reaction;
 }
 
-namespace sprekk::physics {
+namespace sprekk::estimate {
 
 /// Type of quantity with an error estimate.
 struct QuantityKind {
@@ -67,4 +67,4 @@ class MeshError {
   virtual void add_derivative(const Functional& J, const fields::BlockVector& x, fields::BlockVector& right_side) = 0;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::estimate

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::estimate {
 
 /// Records the times of evaluated states.
 class StepRates {
@@ -28,4 +28,4 @@ class StepRates {
   Real time_, dt_ = 0;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::estimate

@@ -3,16 +3,9 @@
 
 #include "fields/layout.hpp"
 
-#include <algorithm>
-#include <string>
 #include <vector>
 
-namespace sprekk::physics {
-
-/// Index of a name; the number of names if it is missing.
-inline int index_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
+namespace sprekk::fields {
 
 /// Distinct values of a property, and the number of the value of each entity. Without numbers, the group of an entity
 /// (region, fracture) selects its value.
@@ -46,8 +39,8 @@ Properties<T> properties(int n_groups, const std::vector<int>& group_of, const U
 }
 
 /// Values of local entities from those of owned entities. Collective.
-std::vector<Real> with_ghosts(const mesh::Mesh& mesh, fields::Entity entity, const std::vector<Real>& owned);
+std::vector<Real> with_ghosts(const mesh::Mesh& mesh, Entity entity, const std::vector<Real>& owned);
 /// Does the same for the components of a layout, [entity * components + component].
-std::vector<Real> with_ghosts(const fields::Layout& layout, const std::vector<Real>& owned);
+std::vector<Real> with_ghosts(const Layout& layout, const std::vector<Real>& owned);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::fields

@@ -10,8 +10,8 @@ namespace sprekk::model {
 
 namespace {
 
-std::vector<physics::QuantityKind> kinds() {
-  std::vector<physics::QuantityKind> all;
+std::vector<estimate::QuantityKind> kinds() {
+  std::vector<estimate::QuantityKind> all;
   physics::for_each_physics([&](auto physics) {
     for (auto& kind : physics.quantities()) all.push_back(std::move(kind));
   });

@@ -16,7 +16,7 @@ class Section;
 namespace sprekk::model {
 
 /// Quantity of interest in the last state.
-struct Quantity : physics::Functional {    ///< `what`: one of the quantities() of a physics
+struct Quantity : estimate::Functional {   ///< `what`: one of the quantities() of a physics
   std::string component = "x";             ///< component of a reaction
   std::optional<Real> relative, absolute;  ///< tolerances; the larger one applies
 

@@ -114,13 +114,13 @@ ErrorEstimate ErrorEstimator::operator()(const std::vector<OutputField>& outputs
   return estimate;
 }
 
-std::vector<Real> ErrorEstimator::by_cell(const physics::MeshError& error, const std::vector<Real>& squares) const {
+std::vector<Real> ErrorEstimator::by_cell(const estimate::MeshError& error, const std::vector<Real>& squares) const {
   std::vector<Real> result(model_.mesh().n_owned_cells, 0);
   for (std::size_t k = 0; k < squares.size(); ++k) result[error.cells()[k]] += squares[k];
   return result;
 }
 
-ErrorEstimate::Flux ErrorEstimator::flux_error(physics::MeshError& error) const {
+ErrorEstimate::Flux ErrorEstimator::flux_error(estimate::MeshError& error) const {
   ErrorEstimate::Flux flux{.name = error.name()};
   auto parts = error.of_state(model_.state(), model_.time());
   std::vector<Real> squares;
@@ -138,7 +138,7 @@ ErrorEstimate::Flux ErrorEstimator::flux_error(physics::MeshError& error) const 
   return flux;
 }
 
-std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(const physics::Functional& J,
+std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(const estimate::Functional& J,
                                                                           const ErrorEstimate& estimate) {
   for (const auto& error : flux_errors_) {
     if (!error->knows(J.what)) continue;
@@ -156,7 +156,7 @@ std::optional<ErrorEstimator::OfFunctional> ErrorEstimator::of_functional(const 
   return std::nullopt;
 }
 
-std::vector<Real> ErrorEstimator::shares(const physics::Functional& J,
+std::vector<Real> ErrorEstimator::shares(const estimate::Functional& J,
                                          const std::vector<std::vector<ErrorEstimate::Flux>>& steps) {
   const auto scope = model_.timers().scope("error estimate");
   if (!has_shares()) return {};

@@ -19,10 +19,10 @@ struct ErrorEstimate {
   Real jump = 0, relative_jump = 0;  ///< L2 error of the jumps, m sqrt(m^2) (2D: m sqrt(m)), and relative to the jumps
   Real stress_norm = 0;              ///< energy norm of the stress, sqrt(J)
   std::vector<Real> energy;          ///< [owned cell] energy of the stress error, J
-  /// Estimate of a balance with its own error estimator, see physics::MeshError.
+  /// Estimate of a balance with its own error estimator, see estimate::MeshError.
   struct Flux {
     std::string name;               ///< "flux"
-    std::vector<Real> parts = {};   ///< [component] error vector e of physics::MeshError
+    std::vector<Real> parts = {};   ///< [component] error vector e of estimate::MeshError
     std::vector<Real> energy = {};  ///< [owned cell] energy of the flux error, including that of the carried quantity
     Real error = 0, whole = 0;      ///< energy norms of the error and of the flux, square root of the unit
   };
@@ -67,7 +67,7 @@ class ErrorEstimator {
   };
   /// Evaluates a functional in the present state, with the estimate of this state. Returns no value if no balance
   /// supports it. Collective.
-  std::optional<OfFunctional> of_functional(const physics::Functional& J, const ErrorEstimate& estimate);
+  std::optional<OfFunctional> of_functional(const estimate::Functional& J, const ErrorEstimate& estimate);
   /// Returns true for a model with exactly one flux error estimator and without mechanics; shares() requires it. Stored
   /// data.
   bool has_shares() const { return !recovery_ && flux_errors_.size() == 1; }
@@ -76,7 +76,7 @@ class ErrorEstimator {
   /// energy norms of the flux error and of the adjoint solution, summed over the steps. Backward in time, every step
   /// uses the linearised equations of the last step. The result is empty without has_shares(), or if a solve does not
   /// converge. Collective.
-  std::vector<Real> shares(const physics::Functional& J, const std::vector<std::vector<ErrorEstimate::Flux>>& steps);
+  std::vector<Real> shares(const estimate::Functional& J, const std::vector<std::vector<ErrorEstimate::Flux>>& steps);
 
   /// Computes where mesh errors affect the integral of d . [[u]] over fracture faces. The linearised problem is solved
   /// with forces d on the plus sides and -d on the minus sides. Returns the energy of the stress error of its solution,
@@ -98,17 +98,17 @@ class ErrorEstimator {
   /// Sets the rows of prescribed unknowns to the error of their values: for displacements, the error between nodes.
   void prescribe(fields::BlockVector& right_side) const;
 
-  ErrorEstimate::Flux flux_error(physics::MeshError& error) const;
-  std::vector<Real> by_cell(const physics::MeshError& error, const std::vector<Real>& squares) const;
+  ErrorEstimate::Flux flux_error(estimate::MeshError& error) const;
+  std::vector<Real> by_cell(const estimate::MeshError& error, const std::vector<Real>& squares) const;
   /// Sets all rows of prescribed unknowns to zero.
   void hold(fields::BlockVector& right_side) const;
 
   Model& model_;
-  std::vector<std::unique_ptr<physics::MeshError>> flux_errors_;
+  std::vector<std::unique_ptr<estimate::MeshError>> flux_errors_;
   physics::ByField<int> blocks_;                       // of displacements; -1 if there is none
   std::unique_ptr<physics::StressRecovery> recovery_;  // null without deformation
   bool wants_reactions_ = false;
-  physics::StepRates rates_;
+  estimate::StepRates rates_;
   std::array<fields::BlockVector, 2> stored_;  // missing storage in the last state and in the state before
   Real section_;  // cross-section of a body with the largest extent of the domain, m^2 (2D: m)
 };

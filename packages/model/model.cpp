@@ -1,5 +1,6 @@
 #include "model/model.hpp"
 
+#include "base/names.hpp"
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
@@ -58,11 +59,11 @@ void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
   const auto anywhere = base::max_over_ranks(*mesh.comm, here);
   for (const auto& [name, condition] : scene.boundary_conditions) {
     if (!condition.fracture) continue;
-    const auto first = anywhere.begin() + physics::index_of(mesh.fracture_names, *condition.fracture) * n;
+    const auto first = anywhere.begin() + base::index_of(mesh.fracture_names, *condition.fracture) * n;
     std::vector<std::string> ends;
     for (std::size_t b = 0; b < n; ++b)
       if (first[b]) ends.push_back(mesh.boundary_names[b]);
-    SPREKK_CHECK(first[physics::index_of(mesh.boundary_names, condition.boundary)],
+    SPREKK_CHECK(first[base::index_of(mesh.boundary_names, condition.boundary)],
                  "{}: Sprekk > Boundary conditions > {} > \"fracture\": \"{}\" does not end on \"{}\"; it ends on {}",
                  scene.origin, name, *condition.fracture, condition.boundary,
                  ends.empty() ? "no boundary" : base::quoted_list(ends));

@@ -1,5 +1,6 @@
 #include "physics/comparison.hpp"
 
+#include "base/names.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "physics/material_library.hpp"
@@ -146,33 +147,33 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
   for (const auto& [name, one] : conditions)
     add({.name = name,
          .field = "",
-         .boundary = index_of(*names.boundaries, one.boundary),
+         .boundary = base::index_of(*names.boundaries, one.boundary),
          .values = {},
-         .region = one.region ? index_of(*names.regions, *one.region) : -1,
-         .fracture = one.fracture ? index_of(*names.fractures, *one.fracture) : -1},
+         .region = one.region ? base::index_of(*names.regions, *one.region) : -1,
+         .fracture = one.fracture ? base::index_of(*names.fractures, *one.fracture) : -1},
         one.prescribed());
   for (const auto& [name, one] : regions)
     add({.name = "Regions > " + name,
          .field = "",
          .boundary = -1,
          .values = {},
-         .region = index_of(*names.regions, name)},
+         .region = base::index_of(*names.regions, name)},
         one.prescribed());
   return all;
 }
 
-std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
-                                           bool of_fractures) {
-  std::vector<FluxCondition> conditions;
+std::vector<transport::FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh,
+                                                      const FluxEntries& entries, bool of_fractures) {
+  std::vector<transport::FluxCondition> conditions;
   for (const auto& [name, one] : scene.boundary_conditions) {
     const auto& flux = one.*entries.flux;
     const auto& coefficient = one.*entries.coefficient;
     if (one.fracture.has_value() != of_fractures || !(flux || coefficient)) continue;
-    conditions.push_back({.boundary = index_of(mesh.boundary_names, one.boundary),
+    conditions.push_back({.boundary = base::index_of(mesh.boundary_names, one.boundary),
                           .value = flux ? *flux : *(one.*entries.beyond),
                           .coefficient = coefficient,
-                          .region = one.region ? index_of(mesh.region_names, *one.region) : -1,
-                          .fracture = one.fracture ? index_of(mesh.fracture_names, *one.fracture) : -1});
+                          .region = one.region ? base::index_of(mesh.region_names, *one.region) : -1,
+                          .fracture = one.fracture ? base::index_of(mesh.fracture_names, *one.fracture) : -1});
   }
   return conditions;
 }
@@ -184,8 +185,8 @@ std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const 
   const auto touches = base::max_over_ranks(*mesh.comm, here);
   std::vector<std::string> all;
   for (const auto& [name, one] : scene.boundary_conditions)
-    if (one.region &&
-        !touches[index_of(mesh.boundary_names, one.boundary) * n + index_of(mesh.region_names, *one.region)])
+    if (one.region && !touches[base::index_of(mesh.boundary_names, one.boundary) * n +
+                               base::index_of(mesh.region_names, *one.region)])
       all.push_back(
           fmt::format("{}: Sprekk > Boundary conditions > {} > \"region\": \"{}\" does not touch the boundary \"{}\": "
                       "the condition applies nowhere",

@@ -110,8 +110,8 @@ struct FluxEntries {
 };
 
 /// Flux conditions of a scene on rock, or on ends of fractures.
-std::vector<FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh, const FluxEntries& entries,
-                                           bool of_fractures = false);
+std::vector<transport::FluxCondition> flux_conditions(const Scene& scene, const mesh::Mesh& mesh,
+                                                      const FluxEntries& entries, bool of_fractures = false);
 
 /// Returns a line for each boundary condition whose region does not touch its boundary. Collective.
 std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh);

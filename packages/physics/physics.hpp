@@ -48,8 +48,8 @@ struct Prescribed {
 };
 
 /// Quantity transported by the fluid of Flow.
-struct CarriedQuantity : Carried {
-  /// Second-order transport (see Antidiffusion): storage capacity, per unit of u, of local cells (per
+struct CarriedQuantity : transport::Carried {
+  /// Second-order transport (see transport::Antidiffusion): storage capacity, per unit of u, of local cells (per
   /// volume) and of the filling of local fracture faces.
   std::function<std::vector<Real>(const Setting&)> stored_in_cells = {}, stored_in_fractures = {};
 };
@@ -102,12 +102,12 @@ struct Physics {
   /// Reason why an error estimate is not available; empty: it is available.
   static std::string no_error_estimate(const Scene&) { return ""; }
   /// Quantities with an error estimate; their names are values of Functional::what.
-  static std::vector<QuantityKind> quantities() { return {}; }
+  static std::vector<estimate::QuantityKind> quantities() { return {}; }
   /// Reason why a quantity has no error estimate, preceded by the location of the entry if there is one; empty: it has
   /// one.
-  static std::string refuses(const Scene&, const Functional&) { return ""; }
+  static std::string refuses(const Scene&, const estimate::Functional&) { return ""; }
   /// Creates the spatial error estimator; null: none. The result holds a reference to the system. Collective.
-  static std::unique_ptr<MeshError> mesh_error(const Setting&, assembly::System&) { return nullptr; }
+  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting&, assembly::System&) { return nullptr; }
   /// Quantities that the fluid transports for this physics.
   static std::vector<CarriedQuantity> carried(const Scene&) { return {}; }
   /// Facet field whose fracture balance receives the power dissipated by sliding; empty: none.

@@ -76,7 +76,8 @@ void Probe::describe(base::Section& s) {
   if (n + of_physics != 1)
     s.fail(fmt::format("give one of \"point\", \"line\", \"boundary\", \"region\", \"fracture\"{}", others));
   if (outputs.empty() && !of_physics && n == 1) s.fail("outputs", "missing; name at least one output");
-  if (!outputs.empty() && of_physics) s.fail("outputs", "requires a place; " + others.substr(2) + " prints all its outputs");
+  if (!outputs.empty() && of_physics)
+    s.fail("outputs", "requires a place; " + others.substr(2) + " prints all its outputs");
   check_parts(s);
 }
 

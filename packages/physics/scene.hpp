@@ -191,7 +191,7 @@ auto at_place(const Scene& scene, const Material& material, const Find& find) {
 template <class Uniform, class Of>
 auto by_cell(const Scene& scene, const mesh::Mesh& mesh, const Uniform& uniform, const Of& of) {
   const auto material = [&](int region) -> const Material& { return scene.material_of(mesh.region_names[region]); };
-  return properties<decltype(of(material(0), mesh::Vector()))>(
+  return fields::properties<decltype(of(material(0), mesh::Vector()))>(
       static_cast<int>(mesh.region_names.size()), mesh.cell_region,
       [&](int region) { return uniform(material(region)); },
       [&](int region, int cell) {

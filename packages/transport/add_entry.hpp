@@ -3,7 +3,7 @@
 
 #include "fields/matrix.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using LocalMatrix = fields::CrsMatrix::local_matrix_device_type;
 
@@ -13,4 +13,4 @@ KOKKOS_INLINE_FUNCTION void add_entry(const LocalMatrix& matrix, LocalIndex row,
     if (matrix.graph.entries(i) == column) Kokkos::atomic_add(&matrix.values(i), value);
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

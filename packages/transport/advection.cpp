@@ -4,7 +4,7 @@
 #include "transport/fracture_faces.hpp"
 #include "transport/hybrid_rock.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using assembly::Loop;
 
@@ -155,7 +155,7 @@ struct InFractures {
   FractureFlowParameters parameters;
   std::unique_ptr<FractureFaces<shape>> faces = {};
 
-  std::vector<std::string> drivers() const { return physics::drivers(parameters, widens); }
+  std::vector<std::string> drivers() const { return transport::drivers(parameters, widens); }
   std::vector<std::string> carried(const std::string& field) const { return {"face " + field}; }
   std::string place() const { return " in fractures"; }
   static constexpr auto entity = fields::Entity::fracture_face;
@@ -349,4 +349,4 @@ std::unique_ptr<assembly::Module> make_fracture_advection(Shape shape, const Fra
   });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

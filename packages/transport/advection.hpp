@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 struct FlowInRock {
   HybridDiffusionParameters darcy;
@@ -36,4 +36,4 @@ std::unique_ptr<assembly::Module> make_fracture_advection(mesh::Shape shape, con
                                                           const Carried& carried, bool widens,
                                                           const std::optional<std::vector<Real>>& stored = {});
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

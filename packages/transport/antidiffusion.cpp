@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using mesh::Vector;
 using mesh::operator+;
@@ -168,4 +168,4 @@ std::vector<Real> Antidiffusion::gains(const Kept& kept) const {
   return gained;
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

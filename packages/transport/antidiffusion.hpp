@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Connectivity of entities through their ends. Two entities are neighbours if they alone share an end.
 struct EndGraph {
@@ -57,4 +57,4 @@ class Antidiffusion {
   fields::Layout of_ends_, of_bounds_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

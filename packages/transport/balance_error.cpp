@@ -1,5 +1,6 @@
 #include "transport/balance_error.hpp"
 
+#include "base/names.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "transport/well_connections.hpp"
@@ -11,7 +12,7 @@
 #include <map>
 #include <set>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 namespace {
 
@@ -49,7 +50,7 @@ std::optional<std::vector<Real>> transmissivities(const assembly::System& system
   return all;
 }
 
-class BalanceError final : public MeshError {
+class BalanceError final : public estimate::MeshError {
  public:
   BalanceError(assembly::System& system, BalanceErrorParameters parameters)
       : system_(system),
@@ -130,7 +131,7 @@ class BalanceError final : public MeshError {
     return what == parameters_.potential.what || what == parameters_.flow.what;
   }
 
-  Real value(const Functional& J, const fields::BlockVector& x,
+  Real value(const estimate::Functional& J, const fields::BlockVector& x,
              const std::vector<assembly::Reaction>& reactions) override {
     for (const auto& well : parameters_.wells.wells)
       SPREKK_CHECK(
@@ -143,7 +144,8 @@ class BalanceError final : public MeshError {
     return is_flow(J) ? through(J.boundary, x, reactions) : mean(J, x);
   }
 
-  void add_derivative(const Functional& J, const fields::BlockVector&, fields::BlockVector& right_side) override {
+  void add_derivative(const estimate::Functional& J, const fields::BlockVector&,
+                      fields::BlockVector& right_side) override {
     const auto at = [&](int k) { return right_side[blocks_[k]]->getLocalViewHost(Tpetra::Access::ReadWrite); };
     const std::array rows = {at(0), at(1)};
     if (!J.well.empty()) return add_well(J, rows);
@@ -155,7 +157,7 @@ class BalanceError final : public MeshError {
   }
 
  private:
-  bool is_flow(const Functional& J) const { return J.what == parameters_.flow.what; }
+  bool is_flow(const estimate::Functional& J) const { return J.what == parameters_.flow.what; }
 
   /// Signed distance of a well from the centre of its fracture face, along the face, m.
   Real distance_along(const WellConnection& c) const {
@@ -196,7 +198,7 @@ class BalanceError final : public MeshError {
   /// Inflow into the domain through prescribed conditions of a boundary.
   Real through(const std::string& boundary, const fields::BlockVector& x,
                const std::vector<assembly::Reaction>& reactions) {
-    const auto number = index_of(system_.mesh().boundary_names, boundary);
+    const auto number = base::index_of(system_.mesh().boundary_names, boundary);
     Real sum = total({parameters_.inflows, boundary}, x);
     for (const auto& reaction : reactions)
       if (reaction.called.name == parameters_.inflows && reaction.field == "face " + parameters_.field &&
@@ -205,7 +207,7 @@ class BalanceError final : public MeshError {
     return sum;
   }
 
-  std::vector<LocalIndex> faces_of(const Functional& J) const {
+  std::vector<LocalIndex> faces_of(const estimate::Functional& J) const {
     const auto& mesh = system_.mesh();
     std::vector<LocalIndex> faces;
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
@@ -220,7 +222,7 @@ class BalanceError final : public MeshError {
     for (const LocalIndex f : faces) sum += system_.mesh().fracture_faces[f].area;
     return base::sum_over_ranks(*system_.mesh().comm, sum);
   }
-  Real mean(const Functional& J, const fields::BlockVector& x) const {
+  Real mean(const estimate::Functional& J, const fields::BlockVector& x) const {
     const auto& mesh = system_.mesh();
     const auto p = x[blocks_[1]]->getLocalViewHost(Tpetra::Access::ReadOnly);
     const auto faces = faces_of(J);
@@ -232,7 +234,7 @@ class BalanceError final : public MeshError {
   /// Adds the derivative of a well functional. The flow W (p_w - p) is differentiated by p_w. The pressure of a well is
   /// the mean weighted by W.
   template <class Rows>
-  void add_well(const Functional& J, const std::array<Rows, 2>& rows) const {
+  void add_well(const estimate::Functional& J, const std::array<Rows, 2>& rows) const {
     for (const auto& c : connections_)
       if (parameters_.wells.wells[c.well].name == J.well)
         rows[c.face >= 0](c.row, 0) += is_flow(J) ? c.index : c.index / index_of_wells_[c.well];
@@ -243,7 +245,7 @@ class BalanceError final : public MeshError {
     const auto& mesh = system_.mesh();
     const auto& facets = *mesh.facets;
     const auto held = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system_.constrained(blocks_[1]));
-    const int number = index_of(mesh.boundary_names, boundary);
+    const int number = base::index_of(mesh.boundary_names, boundary);
     const auto set = [&](LocalIndex facet) {
       if (facet < facets.n_owned && held(facet)) rows(facet, 0) = 1;
     };
@@ -256,7 +258,7 @@ class BalanceError final : public MeshError {
   assembly::System& system_;
   BalanceErrorParameters parameters_;
   Blocks blocks_, carriers_{};
-  StepRates rates_;
+  estimate::StepRates rates_;
   std::vector<Real> of_state_;  // components of the last state of of_state()
   std::vector<WellConnection> connections_;
   std::vector<Real> index_of_wells_;       // sum of W over all ranks
@@ -270,8 +272,8 @@ class BalanceError final : public MeshError {
 
 }  // namespace
 
-std::unique_ptr<MeshError> make_balance_error(assembly::System& system, BalanceErrorParameters parameters) {
+std::unique_ptr<estimate::MeshError> make_balance_error(assembly::System& system, BalanceErrorParameters parameters) {
   return std::make_unique<BalanceError>(system, std::move(parameters));
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

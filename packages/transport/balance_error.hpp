@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 struct BalanceErrorParameters {
   std::string field;    ///< on cells; on facets with "face " before it
@@ -44,6 +44,6 @@ struct BalanceErrorParameters {
 /// The index W of a well in rock (see make_wells()) corrects the discretisation error of the cells around the well. The
 /// error is therefore zero in the cell of the well and in cells that share a corner with it. With such wells,
 /// functionals have no value: throws an Error. The result holds a reference to the system. Collective.
-std::unique_ptr<MeshError> make_balance_error(assembly::System& system, BalanceErrorParameters parameters);
+std::unique_ptr<estimate::MeshError> make_balance_error(assembly::System& system, BalanceErrorParameters parameters);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

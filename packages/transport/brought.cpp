@@ -2,7 +2,7 @@
 
 #include "transport/add_entry.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// | symbol        | shape        | unit       |                                          |
 /// | row, face     | [connection] | -          | of p and u; fracture face, -1 for rock   |
@@ -142,4 +142,4 @@ void Brought::add_jacobian(const assembly::State& state, fields::BlockMatrix& J)
       });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

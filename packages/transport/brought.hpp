@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Adds c q (u - v) to the row of u at each connection with an inflow q > 0. v is the value of u in the injected fluid.
 /// This is a difference as in make_advection(). Connections with outflow add nothing. q is prescribed, or W (p_w - p);
@@ -50,4 +50,4 @@ class Brought {
   ConstView<laws::Conduit*> conduit_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Quantity transported by a fluid. A fluid volume V at reference conditions carries `capacity` * u * V.
 struct Carried {
@@ -19,4 +19,4 @@ struct Carried {
   std::optional<FluidChange> change = {};            ///< effect on the fluid; at most one physics has one
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

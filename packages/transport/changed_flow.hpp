@@ -4,7 +4,7 @@
 #include "laws/fluid_response.hpp"
 #include "transport/hybrid_cell.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 template <class A, class B>
 struct Joined;
@@ -62,4 +62,4 @@ struct ChangedFlow {
   }
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Radial flow around a straight line in a homogeneous, anisotropic body. The pressure is -ln(rho) with
 /// rho^2 = x . N x. The flow per length is 2 pi times `conductance`. In 2D the line is perpendicular to the plane.
@@ -132,4 +132,4 @@ Real log_equivalent_radius(const std::vector<WellPatchEntity>& patch, const Outs
   return -sum / all - patch_bias;
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

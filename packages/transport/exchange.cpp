@@ -2,7 +2,7 @@
 
 #include "transport/add_entry.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Coefficient of one exchange and its derivatives by the widening of its face and by the field of FluidChange.
 struct Exchange::Coefficient {
@@ -112,4 +112,4 @@ void Exchange::add_jacobian(const assembly::State& state, fields::BlockMatrix& J
       });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

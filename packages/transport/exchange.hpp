@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Adds c (p - p_outside) to rows of a pressure field; for a compressible fluid c (e - e_outside)/c_f. With conduits, c
 /// is the coefficient times the present transmissivity of a fracture face.
@@ -42,4 +42,4 @@ class Exchange {
   ConstView<laws::Conduit*> conduit_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

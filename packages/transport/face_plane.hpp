@@ -4,7 +4,7 @@
 #include "mesh/facets.hpp"
 #include "transport/hybrid_cell.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Fracture face in its own coordinates, with the flow matrix for a transmissivity. In 2D a face is a line, for which
 /// two-point fluxes are exact for constant gradients.
@@ -45,4 +45,4 @@ class FacePlane {
   }
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

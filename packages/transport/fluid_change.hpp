@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 struct FluidChange {
   std::string field;  ///< u on cells; on facets the name has the prefix "face "
@@ -25,4 +25,4 @@ struct FlowFactor {
   KOKKOS_INLINE_FUNCTION Real slope(LocalIndex row) const { return response.flow(carried(row)).slope; }
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 namespace {
 
@@ -28,7 +28,7 @@ bool is_orthogonal(const CellFaces<shape>& faces, const laws::Mobility& mobility
 }
 
 /// Number of non-orthogonal cells and number of cells on all ranks. Collective.
-std::array<GlobalIndex, 2> skew_cells(const mesh::Mesh& mesh, const Properties<laws::Mobility>& mobility) {
+std::array<GlobalIndex, 2> skew_cells(const mesh::Mesh& mesh, const fields::Properties<laws::Mobility>& mobility) {
   std::array<GlobalIndex, 2> here{0, mesh.n_owned_cells};
   mesh::for_corners(mesh.shape, [&](auto shape) {
     Real X[mesh::n_nodes(shape())][mesh::dimension(shape())];
@@ -42,7 +42,8 @@ std::array<GlobalIndex, 2> skew_cells(const mesh::Mesh& mesh, const Properties<l
 
 }  // namespace
 
-ChosenScheme flux_scheme(const SchemeEntry& entry, const mesh::Mesh& mesh, const Properties<laws::Mobility>& mobility) {
+ChosenScheme flux_scheme(const SchemeEntry& entry, const mesh::Mesh& mesh,
+                         const fields::Properties<laws::Mobility>& mobility) {
   const auto& [section, name, property] = entry;
   const bool simplices = mesh::is_simplex(mesh.shape);
   SPREKK_CHECK(name != "rt0" || simplices,
@@ -57,7 +58,7 @@ ChosenScheme flux_scheme(const SchemeEntry& entry, const mesh::Mesh& mesh, const
 }
 
 std::string scheme_warning(const SchemeEntry& entry, const mesh::Mesh& mesh,
-                           const Properties<laws::Mobility>& mobility) {
+                           const fields::Properties<laws::Mobility>& mobility) {
   const auto [skew, all] = entry.name == "tpfa" ? skew_cells(mesh, mobility) : std::array<GlobalIndex, 2>{};
   if (skew == 0) return "";
   return fmt::format(
@@ -70,4 +71,4 @@ std::string name_of(FluxScheme scheme) {
   return scheme == FluxScheme::rt0 ? "rt0" : scheme == FluxScheme::tpfa ? "tpfa" : "mimetic";
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

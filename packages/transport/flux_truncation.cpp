@@ -4,7 +4,7 @@
 #include "base/over_ranks.hpp"
 #include "transport/patch_fit.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 namespace {
 
@@ -223,4 +223,4 @@ std::unique_ptr<FluxTruncation> make_flux_truncation(RCP<const mesh::Mesh> mesh,
   });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Truncation error of a balance due to its scheme, as in HybridError, or to upwinding.
 class FluxTruncation {
@@ -42,4 +42,4 @@ std::unique_ptr<FluxTruncation> make_flux_truncation(RCP<const mesh::Mesh> mesh,
                                                      const fields::Layout& facets, ConstView<char*> held_facets,
                                                      HybridFluxParameters parameters);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

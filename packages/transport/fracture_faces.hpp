@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Flow of a fracture face through its ridges. Unknowns: p_F and the pressures on ridges.
 template <int n>
@@ -155,4 +155,4 @@ class FractureFaces {
   ConstView<laws::Conduit*> conduits_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using assembly::Loop;
 
@@ -237,4 +237,4 @@ std::unique_ptr<assembly::Module> make_fracture_flow(Shape shape, FractureFlowPa
   });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

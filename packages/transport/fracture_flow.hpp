@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 struct FractureFlowParameters {
   /// Hydraulic data of one fracture face.
@@ -47,4 +47,4 @@ struct FractureFlowParameters {
 /// times the aperture (faces, m^2/s, global components).
 std::unique_ptr<assembly::Module> make_fracture_flow(mesh::Shape shape, FractureFlowParameters parameters);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using mesh::Shape;
 
@@ -358,4 +358,4 @@ struct HybridCell {
   }
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

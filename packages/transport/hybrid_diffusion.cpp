@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using assembly::Loop;
 
@@ -239,4 +239,4 @@ std::unique_ptr<assembly::Module> make_hybrid_diffusion(Shape shape, HybridDiffu
   });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

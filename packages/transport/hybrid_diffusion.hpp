@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Parameters of the diffusion of a quantity Q driven by the gradient of u. Fluid: volume (m^3) and pressure (Pa).
 /// Energy: J and K.
@@ -24,7 +24,7 @@ struct HybridDiffusionParameters {
   std::string flux;       ///< name of the flux output
   std::string flux_unit;  ///< unit of Q per area and time
   OutflowNames outflow = {};
-  Properties<laws::Mobility> mobility = {};  ///< K of cells in q = -K grad u
+  fields::Properties<laws::Mobility> mobility = {};  ///< K of cells in q = -K grad u
   FluxScheme scheme = FluxScheme::rt0;
   std::string reason = "";                       ///< reason for the choice of the scheme
   laws::Fluid fluid = {};                        ///< energy: the default, with density 1
@@ -59,4 +59,4 @@ std::unique_ptr<assembly::Module> make_hybrid_diffusion(mesh::Shape shape, Hybri
 void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& cells,
                  const View<Real*>& facets);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

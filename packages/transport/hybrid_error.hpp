@@ -7,7 +7,7 @@
 
 #include <memory>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 struct HybridErrorParameters {
   HybridFluxParameters flow = {};
@@ -40,11 +40,11 @@ class HybridError {
   virtual std::size_t n_of_energy() const = 0;
   /// Components of a state from potentials on cells and on facets, [owned unknown]. The storage rate refers to the two
   /// previous calls, or to the initial state. Collective.
-  virtual MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
-                                    const assembly::Rates& rates) = 0;
+  virtual estimate::MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
+                                              const assembly::Rates& rates) = 0;
   /// Components of a small change (d_cells, d_facets) of these potentials. Collective.
-  virtual MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
-                                     const fields::Vector& d_cells, const fields::Vector& d_facets) const = 0;
+  virtual estimate::MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
+                                               const fields::Vector& d_cells, const fields::Vector& d_facets) const = 0;
 
   /// Linear form of potentials v and their flows q_v, summed over the ends of each entity.
   struct Forces {
@@ -64,4 +64,4 @@ std::unique_ptr<HybridError> make_hybrid_error(RCP<const mesh::Mesh> mesh, const
                                                const fields::Layout& facets, ConstView<char*> held_facets,
                                                HybridErrorParameters parameters);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

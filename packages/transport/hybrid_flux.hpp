@@ -16,7 +16,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 struct HybridFluxParameters {
   HybridDiffusionParameters rock = {};                  ///< as in the module
@@ -285,4 +285,4 @@ class HybridFlux {
   std::unordered_map<LocalIndex, Real> resistance_;  // [cell * n + face] Pa s/m^3
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

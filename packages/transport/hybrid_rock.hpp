@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Sets the resistances of fracture sides, 1/(exchange A), in [row of the cell, face]. Without finite `exchange` the
 /// operator is unchanged.
@@ -42,4 +42,4 @@ HybridCell<shape> hybrid_cell(const assembly::Context& context, const HybridDiff
   return op;
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 bool Outflow::constant_in_time() const {
   return std::all_of(conditions_.begin(), conditions_.end(),
@@ -62,4 +62,4 @@ void Outflow::totals(const assembly::State& state, const mesh::Mesh& mesh, std::
   }
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Prescribed outflow per area and time: the value, or c (u - value) with a coefficient c, see Exchange. In the second
 /// case the value is that of u outside.
@@ -83,4 +83,4 @@ class Outflow {
   Exchange exchange_;  // with the exterior
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Entity and its corners. A corner has the same number in all its entities, on all ranks.
 template <int n_corners>
@@ -101,4 +101,4 @@ class PatchFit {
   std::vector<std::array<int, n_corners>> place_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Sums over all ranks at numbered places.
 class Places {
@@ -50,4 +50,4 @@ class Places {
   RCP<const fields::Import> import_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

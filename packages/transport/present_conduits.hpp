@@ -4,7 +4,7 @@
 #include "base/types.hpp"
 #include "laws/conduit.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Transmissivities of faces with a widening, or with given hydraulic apertures (State::coefficients).
 ///
@@ -24,4 +24,4 @@ struct PresentConduits {
   }
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Flux in a simplex of d dimensions. Quadratic functions have their values at places: the corners, then the midpoints
 /// of edges (0, 1), (0, 2), ..., (1, 2), ...
@@ -221,4 +221,4 @@ class SimplexFlux {
   Real centre_[d] = {}, X_[n][d], gradient_[n][d], resistance_[d][d], root_[d][d] = {}, volume_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Hybrid form of -div(beta grad dp/dt) in rock cells, with beta = softness S. S is the mean of x x^T over the corners
 /// of a cell, relative to its centre, e.g. h^2/4 for a cube of edge h (Aguilar, Gaspar, Lisbona and Rodrigo 2008). It
@@ -94,4 +94,4 @@ struct StabilisedFlow {
   }
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using assembly::Loop;
 
@@ -290,4 +290,4 @@ std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameter
   return parameters.widens ? make(StorageFace()) : make(StorageCell());
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

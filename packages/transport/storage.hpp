@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Stored amount per volume (fractures: per area): (room + growth g) e(u). Here g is the change of u since the start,
 /// and e is the fluid density relative to reference conditions.
@@ -22,12 +22,12 @@ struct Capacity {
 };
 
 struct StorageParameters {
-  std::string name;                        ///< name of the module
-  std::string field;                       ///< u, on cells
-  Properties<Capacity> capacity = {};      ///< of cells
-  laws::Fluid fluid = {};                  ///< energy: the default, with density 1
-  base::Expression initial = 0;            ///< u at the start
-  std::optional<FluidChange> change = {};  ///< multiplies the density by the density of its response
+  std::string name;                            ///< name of the module
+  std::string field;                           ///< u, on cells
+  fields::Properties<Capacity> capacity = {};  ///< of cells
+  laws::Fluid fluid = {};                      ///< energy: the default, with density 1
+  base::Expression initial = 0;                ///< u at the start
+  std::optional<FluidChange> change = {};      ///< multiplies the density by the density of its response
 };
 
 /// Adds V (s - s_old)/dt to the rows of u (implicit Euler), with s as defined by Capacity. Saves the change of u since
@@ -47,4 +47,4 @@ struct FractureStorageParameters {
 /// the porosity.
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

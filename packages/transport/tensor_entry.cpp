@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 bool is_uniform_tensor(const std::vector<base::Expression>& components) {
   return std::all_of(components.begin(), components.end(), [](const auto& value) { return value.is_constant(); });
@@ -35,4 +35,4 @@ laws::Mobility tensor_at(const std::string& name, const std::vector<base::Expres
   return m;
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

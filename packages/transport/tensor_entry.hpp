@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Returns whether all components are independent of the position.
 bool is_uniform_tensor(const std::vector<base::Expression>& components);
@@ -18,4 +18,4 @@ bool is_uniform_tensor(const std::vector<base::Expression>& components);
 laws::Mobility tensor_at(const std::string& name, const std::vector<base::Expression>& components, int dim,
                          const std::array<Real, 3>& x);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 using mesh::Vector;
 using mesh::operator+;
@@ -331,4 +331,4 @@ WellConnections find_well_connections(const mesh::Mesh& mesh, const WellsParamet
   return mesh::for_corners(mesh.shape, [&](auto shape) { return Finder<shape()>(mesh, parameters).find(); });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

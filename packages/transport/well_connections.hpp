@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 /// Connection of a well with a cell or a fracture face.
 struct WellConnection {
@@ -27,4 +27,4 @@ struct WellConnections {
 /// Finds the connections. Collective.
 WellConnections find_well_connections(const mesh::Mesh& mesh, const WellsParameters& parameters);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 namespace {
 
@@ -319,4 +319,4 @@ std::unique_ptr<assembly::Module> make_wells(WellsParameters parameters) {
   return std::make_unique<Wells>(std::move(parameters));
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

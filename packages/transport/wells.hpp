@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::transport {
 
 struct Well {
   std::string name;
@@ -27,7 +27,7 @@ struct Well {
 
 struct WellsParameters {
   std::vector<Well> wells;
-  Properties<laws::Mobility> mobility;  ///< this and the following as in HybridDiffusionParameters
+  fields::Properties<laws::Mobility> mobility;  ///< this and the following as in HybridDiffusionParameters
   FluxScheme scheme = FluxScheme::rt0;
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};
@@ -62,4 +62,4 @@ struct WellsParameters {
 /// or extracted fluid, and Carried::total, with the injection rate c q u.
 std::unique_ptr<assembly::Module> make_wells(WellsParameters parameters);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::transport

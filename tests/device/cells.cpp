@@ -7,7 +7,7 @@ namespace sprekk::device {
 namespace {
 
 using mesh::Shape;
-using physics::FluxScheme;
+using transport::FluxScheme;
 
 /// Returns cells without common nodes: a third are affine; of the others of order 2, half are curved.
 template <Shape shape>
@@ -76,7 +76,7 @@ void add_elasticity(Report& report, const std::string& name, int n_timed = 0) {
 }
 
 template <Shape shape>
-physics::HybridCell<shape> flow_in_cells(int n, FluxScheme scheme) {
+transport::HybridCell<shape> flow_in_cells(int n, FluxScheme scheme) {
   const auto geometry = random_cells<shape>(n);
   laws::Mobility mobility;
   const Real k[3][3] = {{3e-10, 1e-10, 0}, {1e-10, 2e-10, 0}, {0, 0, 1e-10}};
@@ -87,7 +87,7 @@ physics::HybridCell<shape> flow_in_cells(int n, FluxScheme scheme) {
 
 template <Shape shape>
 void add_flow(Report& report, const std::string& name, FluxScheme scheme, int n_timed = 0) {
-  using Op = physics::HybridCell<shape>;
+  using Op = transport::HybridCell<shape>;
   const auto make = [&](int n) {
     return std::pair(flow_in_cells<shape>(n, scheme), unknowns(n, Op::Columns::size, 5e6, 2e7));
   };
@@ -97,7 +97,7 @@ void add_flow(Report& report, const std::string& name, FluxScheme scheme, int n_
 /// Adds flow of a fluid with variable density and viscosity.
 template <Shape shape>
 void add_changed_flow(Report& report, const std::string& name, FluxScheme scheme) {
-  using Op = physics::ChangedFlow<physics::HybridCell<shape>>;
+  using Op = transport::ChangedFlow<transport::HybridCell<shape>>;
   const auto make = [&](int n) {
     laws::FluidResponse response;
     response.expansion = 5e-4;

@@ -155,13 +155,13 @@ std::string Flow::no_error_estimate(const Scene& scene) {
   return "";
 }
 
-std::vector<QuantityKind> Flow::quantities() {
+std::vector<estimate::QuantityKind> Flow::quantities() {
   return {{"pressure", "Pa", "Pa", "pressure of a well, or mean over fractures"},
           {"flow", "m^3/s", "m^2/s", "flow of fluid into the domain from a well or through a boundary"},
           {"flux", "sqrt(W)", "sqrt(W/m)", "square root of the power dissipated by the flow of fluid"}};
 }
 
-std::string Flow::refuses(const Scene& scene, const Functional& J) {
+std::string Flow::refuses(const Scene& scene, const estimate::Functional& J) {
   const bool of_well = !J.well.empty();
   const auto absent = [&](const char* entry, const char* of) {
     return fmt::format("\"{}\": must be absent: \"{}\" {}", entry, J.what, of);

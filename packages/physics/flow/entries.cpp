@@ -26,9 +26,9 @@ void Flow::Rock::check(base::Section& s) const {
   if (compressibility && biot_modulus) s.fail("give either \"compressibility of pores\" or \"Biot modulus\"");
 }
 
-bool Flow::Rock::flows_uniformly() const { return is_uniform_tensor(permeability); }
+bool Flow::Rock::flows_uniformly() const { return transport::is_uniform_tensor(permeability); }
 
-Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const {
+transport::Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const {
   const Real room = value_at("porosity", porosity, base::between(0, 1), x), least = room * of_fluid;
   if (!biot_modulus) return {.room = room, .growth = compressibility.value_or(0)};
   const auto here = porosity.is_constant() ? "" : fmt::format(" at ({}, {}, {})", x[0], x[1], x[2]);
@@ -45,7 +45,7 @@ bool Flow::Rock::may_store(Real of_fluid) const {
 }
 
 laws::Mobility Flow::Rock::mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const {
-  auto k = tensor_at("permeability", permeability, dim, x);
+  auto k = transport::tensor_at("permeability", permeability, dim, x);
   for (auto& row : k.value)
     for (Real& component : row) component /= viscosity;
   return k;

@@ -1,5 +1,6 @@
 #include "physics/flow/flow.hpp"
 
+#include "base/names.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
@@ -26,14 +27,14 @@ namespace sprekk::physics {
 
 namespace {
 
-std::vector<FluxCondition> fluid_conditions(const Scene& scene, const mesh::Mesh& mesh, bool of_fractures) {
+std::vector<transport::FluxCondition> fluid_conditions(const Scene& scene, const mesh::Mesh& mesh, bool of_fractures) {
   return flux_conditions(scene, mesh,
                          {&BoundaryCondition::flux, &BoundaryCondition::pressure, &BoundaryCondition::conductance},
                          of_fractures);
 }
 
-std::vector<Well> wells_in(const Scene& scene, int dim) {
-  std::vector<Well> wells;
+std::vector<transport::Well> wells_in(const Scene& scene, int dim) {
+  std::vector<transport::Well> wells;
   for (const auto& [name, one] : scene.flow->wells) {
     wells.push_back({.name = name,
                      .points = {},
@@ -60,8 +61,8 @@ Real least_opening(const Material& joint, const std::array<Real, 3>& x) {
 /// Hydraulic data of a joint with an opening, m; none: the joint cannot open. Newton iterates may close the joint
 /// further than its law and block an injection. The aperture is therefore at least a fraction of that under infinite
 /// compression.
-FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, const std::optional<Real>& opening,
-                                        const std::array<Real, 3>& x) {
+transport::FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity,
+                                                   const std::optional<Real>& opening, const std::array<Real, 3>& x) {
   constexpr Real part = 0.9;  // below 1, so that all solutions have larger apertures than this bound
   const Real aperture = value_at("initial aperture", joint.initial_aperture, base::at_least(0), x),
              residual = value_at("residual aperture", joint.residual_aperture, base::at_least(0), x),
@@ -75,7 +76,7 @@ FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity, c
   const Real k = given ? value_at("tangential permeability", *given, base::positive(), x) : 0,
              across = value_at("normal permeability", joint.normal_permeability, base::positive_or_infinite(), x);
   const auto walls = joint.walls(x);
-  const FractureFlowParameters::Face face{
+  const transport::FractureFlowParameters::Face face{
       .along = {aperture + opening.value_or(0), std::max(residual, walls.hydraulic(of_iterates)), k, viscosity, walls},
       .exchange = 2 * across / (a * viscosity)};
   SPREKK_CHECK(face.along.hydraulic_aperture() > 0,
@@ -96,11 +97,11 @@ std::vector<std::optional<Real>> openings_of(const Setting& setting) {
 }
 
 /// Hydraulic data of local fracture faces. Collective.
-std::vector<FractureFlowParameters::Face> hydraulics(const Setting& setting) {
+std::vector<transport::FractureFlowParameters::Face> hydraulics(const Setting& setting) {
   const auto& scene = setting.scene;
   const auto& mesh = setting.mesh;
   const auto openings = openings_of(setting);
-  std::vector<FractureFlowParameters::Face> faces;
+  std::vector<transport::FractureFlowParameters::Face> faces;
   base::collectively(*mesh.comm, [&] {
     for (std::size_t f = 0; f < openings.size(); ++f) {
       const auto& face = mesh.fracture_faces[f];
@@ -121,21 +122,21 @@ std::vector<CarriedQuantity> carried_in(const Scene& scene) {
   return all;
 }
 
-HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh,
-                                     const std::optional<FluidChange>& change) {
+transport::HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh,
+                                                const std::optional<transport::FluidChange>& change) {
   const auto& flow = *scene.flow;
-  HybridDiffusionParameters darcy{.name = "Darcy flow",
-                                  .field = "pressure",
-                                  .unit = "Pa",
-                                  .flux = "Darcy velocity",
-                                  .flux_unit = "m/s",
-                                  .outflow = {"conductance", "inflows", mesh.dim() == 2 ? "m^2/s" : "m^3/s"},
-                                  .fluid = {flow.compressibility, flow.reference_pressure},
-                                  .change = change,
-                                  .conditions = fluid_conditions(scene, mesh, false),
-                                  .coupled_by = {"displacement"}};
+  transport::HybridDiffusionParameters darcy{.name = "Darcy flow",
+                                             .field = "pressure",
+                                             .unit = "Pa",
+                                             .flux = "Darcy velocity",
+                                             .flux_unit = "m/s",
+                                             .outflow = {"conductance", "inflows", mesh.dim() == 2 ? "m^2/s" : "m^3/s"},
+                                             .fluid = {flow.compressibility, flow.reference_pressure},
+                                             .change = change,
+                                             .conditions = fluid_conditions(scene, mesh, false),
+                                             .coupled_by = {"displacement"}};
   base::collectively(*mesh.comm, [&] { darcy.mobility = mobility(scene, mesh); });
-  const auto chosen = flux_scheme(scheme_entry(scene), mesh, darcy.mobility);
+  const auto chosen = transport::flux_scheme(scheme_entry(scene), mesh, darcy.mobility);
   darcy.scheme = chosen.scheme;
   darcy.reason = chosen.reason;
   darcy.in_regions =
@@ -146,28 +147,28 @@ HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::Mesh& mesh,
   return darcy;
 }
 
-FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
-                                     const HybridDiffusionParameters& darcy) {
-  FractureFlowParameters fractures{.scheme = darcy.scheme,
-                                   .fluid = darcy.fluid,
-                                   .change = darcy.change,
-                                   .weight = darcy.weight,
-                                   .outflow = darcy.outflow,
-                                   .conditions = fluid_conditions(scene, mesh, true)};
+transport::FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
+                                                const transport::HybridDiffusionParameters& darcy) {
+  transport::FractureFlowParameters fractures{.scheme = darcy.scheme,
+                                              .fluid = darcy.fluid,
+                                              .change = darcy.change,
+                                              .weight = darcy.weight,
+                                              .outflow = darcy.outflow,
+                                              .conditions = fluid_conditions(scene, mesh, true)};
   if (Mechanics::is_in(scene)) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
   fractures.cut_by.resize(mesh.fracture_names.size());
   for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k) {
     const auto& fracture = scene.fractures.at(mesh.fracture_names[k]);
     fractures.source.push_back(fracture.source);
     for (const auto& name : fracture.cuts)
-      fractures.cut_by[index_of(mesh.fracture_names, name)].push_back(static_cast<int>(k));
+      fractures.cut_by[base::index_of(mesh.fracture_names, name)].push_back(static_cast<int>(k));
   }
   return fractures;
 }
 
 /// Storage capacities of the pores in local cells. Collective.
-Properties<Capacity> capacities(const Setting& setting, Real of_fluid) {
-  Properties<Capacity> result;
+fields::Properties<transport::Capacity> capacities(const Setting& setting, Real of_fluid) {
+  fields::Properties<transport::Capacity> result;
   base::collectively(*setting.mesh.comm, [&] {
     result = by_cell(
         setting.scene, setting.mesh, [](const Material& rock) { return rock.porosity.is_constant(); },
@@ -178,15 +179,15 @@ Properties<Capacity> capacities(const Setting& setting, Real of_fluid) {
 
 /// Parameters of the modules and of the error estimate.
 struct Parts {
-  HybridDiffusionParameters darcy;
-  FractureFlowParameters fractures;
-  WellsParameters wells;
+  transport::HybridDiffusionParameters darcy;
+  transport::FractureFlowParameters fractures;
+  transport::WellsParameters wells;
 };
 
 /// Collects the parameters. Collective.
 Parts parts_of(const Setting& setting, const std::vector<CarriedQuantity>& all_carried) {
   const auto& [scene, mesh, start] = setting;
-  std::optional<FluidChange> change;
+  std::optional<transport::FluidChange> change;
   for (const auto& carried : all_carried)
     if (carried.change) change = carried.change;
   Parts parts{darcy_flow(scene, mesh, change), {}, {}};
@@ -230,7 +231,7 @@ base::Expression initial_pressure(const Scene& scene) {
                     : base::Expression(scene.host_fluid ? scene.host_fluid->initial_pressure : 0);
 }
 
-Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
       scene, mesh, [](const Material& rock) { return rock.flows_uniformly(); },
       [&](const Material& rock, const auto& x) { return rock.mobility(mesh.dim(), scene.flow->viscosity, x); });
@@ -252,7 +253,7 @@ std::vector<StartAperture> start_apertures(const Setting& setting) {
   return apertures;
 }
 
-SchemeEntry scheme_entry(const Scene& scene) {
+transport::SchemeEntry scheme_entry(const Scene& scene) {
   return {.section = "Flow", .name = scene.flow ? scene.flow->scheme : "auto", .property = "permeability"};
 }
 
@@ -265,7 +266,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const auto all_carried = carried_in(scene);
   auto [darcy, fractures, wells] = parts_of(setting, all_carried);
   const auto change = darcy.change;
-  FractureStorageParameters in_fractures{
+  transport::FractureStorageParameters in_fractures{
       .fluid = darcy.fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change};
   for (const auto& face : fractures.faces) {
     in_fractures.aperture.push_back(deforms ? face.along.aperture : face.along.mechanical_aperture());
@@ -274,30 +275,30 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const auto fluid = darcy.fluid;
   for (const auto& carried : all_carried) {
     const auto stored = [&](const auto& find) { return find ? std::optional(find(setting)) : std::nullopt; };
-    modules.push_back(
-        make_advection(mesh.shape, {darcy, stabilisation(scene, mesh)}, carried, stored(carried.stored_in_cells)));
+    modules.push_back(transport::make_advection(mesh.shape, {darcy, stabilisation(scene, mesh)}, carried,
+                                                stored(carried.stored_in_cells)));
     if (!mesh.fracture_names.empty())
-      modules.push_back(
-          make_fracture_advection(mesh.shape, fractures, carried, deforms, stored(carried.stored_in_fractures)));
+      modules.push_back(transport::make_fracture_advection(mesh.shape, fractures, carried, deforms,
+                                                           stored(carried.stored_in_fractures)));
   }
-  if (!flow.wells.empty()) modules.push_back(make_wells(std::move(wells)));
-  modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(darcy)));
-  StorageParameters storage{
+  if (!flow.wells.empty()) modules.push_back(transport::make_wells(std::move(wells)));
+  modules.push_back(transport::make_hybrid_diffusion(mesh.shape, std::move(darcy)));
+  transport::StorageParameters storage{
       .name = "fluid storage", .field = "pressure", .fluid = fluid, .initial = flow.initial_pressure, .change = change};
   storage.capacity = capacities(setting, fluid.compressibility);
   const bool denser = fluid.compressibility > 0 || change;
   const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
                                   [&](const auto& of) { return of.growth > 0 || (denser && of.room > 0); });
   if (base::on_any_rank(*mesh.comm, stores))  // values are those of local cells
-    modules.push_back(make_storage(std::move(storage)));
+    modules.push_back(transport::make_storage(std::move(storage)));
   if (mesh.fracture_names.empty()) return;
-  modules.push_back(make_fracture_flow(mesh.shape, std::move(fractures)));
-  if (denser || deforms) modules.push_back(make_fracture_storage(std::move(in_fractures)));
+  modules.push_back(transport::make_fracture_flow(mesh.shape, std::move(fractures)));
+  if (denser || deforms) modules.push_back(transport::make_fracture_storage(std::move(in_fractures)));
 }
 
 FluidFlux fluid_flux(const Setting& setting) {
   auto parts = parts_of(setting, {});
-  SPREKK_CHECK(parts.darcy.scheme == FluxScheme::rt0,
+  SPREKK_CHECK(parts.darcy.scheme == transport::FluxScheme::rt0,
                "{}: the estimate of the error of flow is of triangles and tetrahedra, with the scheme rt0",
                setting.scene.origin);
   FluidFlux all{.flux = {.rock = std::move(parts.darcy)}, .conduits = {}, .wells = std::move(parts.wells)};
@@ -310,26 +311,26 @@ FluidFlux fluid_flux(const Setting& setting) {
   return all;
 }
 
-std::unique_ptr<MeshError> Flow::mesh_error(const Setting& setting, assembly::System& system) {
+std::unique_ptr<estimate::MeshError> Flow::mesh_error(const Setting& setting, assembly::System& system) {
   if (!is_in(setting.scene)) return nullptr;
   auto [flux, conduits, wells] = fluid_flux(setting);
   const Real of_fluid = flux.rock.fluid.compressibility;
-  BalanceErrorParameters parameters{.field = "pressure",
-                                    .flux = "flux",
-                                    .power = "W",
-                                    .inflows = "inflows",
-                                    .potential = {"pressure", "pressure"},
-                                    .flow = {"flow", "rate"},
-                                    .error = {.flow = std::move(flux)},
-                                    .start = setting.start,
-                                    .conduits = std::move(conduits),
-                                    .wells = std::move(wells)};
+  transport::BalanceErrorParameters parameters{.field = "pressure",
+                                               .flux = "flux",
+                                               .power = "W",
+                                               .inflows = "inflows",
+                                               .potential = {"pressure", "pressure"},
+                                               .flow = {"flow", "rate"},
+                                               .error = {.flow = std::move(flux)},
+                                               .start = setting.start,
+                                               .conduits = std::move(conduits),
+                                               .wells = std::move(wells)};
   const auto capacity = capacities(setting, of_fluid);
   for (LocalIndex c = 0; system.has_rates() && c < setting.mesh.n_owned_cells; ++c) {
     const auto& of = capacity.of_cell(setting.mesh, c);
     parameters.error.storage.push_back(of.growth + of_fluid * of.room);
   }
-  return make_balance_error(system, std::move(parameters));
+  return transport::make_balance_error(system, std::move(parameters));
 }
 
 namespace {
@@ -366,7 +367,7 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
   std::vector<std::string> all;
-  if (const auto skew = scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh)); !skew.empty())
+  if (const auto skew = transport::scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh)); !skew.empty())
     all.push_back(scene.origin + ": " + skew);
   add_closure_warnings(setting, all);
   return all;

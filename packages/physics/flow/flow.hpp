@@ -58,7 +58,7 @@ struct Flow : Physics<Flow> {
     laws::Mobility mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const;
     /// Storage capacity of the pores at constant strain, for the fluid compressibility `of_fluid`, 1/Pa. Throws an
     /// Error if pores and fluid are inconsistent.
-    Capacity capacity(Real of_fluid, const std::array<Real, 3>& x) const;
+    transport::Capacity capacity(Real of_fluid, const std::array<Real, 3>& x) const;
     bool may_store(Real of_fluid) const;  ///< storage is possible somewhere
   };
 
@@ -113,9 +113,9 @@ struct Flow : Physics<Flow> {
   static bool has_initial_state(const Scene& scene);
   static std::vector<std::string> sections_with_rates() { return {"Flow"}; }
   static std::string no_error_estimate(const Scene& scene);
-  static std::vector<QuantityKind> quantities();
-  static std::string refuses(const Scene& scene, const Functional& J);
-  static std::unique_ptr<MeshError> mesh_error(const Setting& setting, assembly::System& system);
+  static std::vector<estimate::QuantityKind> quantities();
+  static std::string refuses(const Scene& scene, const estimate::Functional& J);
+  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
@@ -138,8 +138,8 @@ struct StartAperture {
 std::vector<StartAperture> start_apertures(const Setting& setting);
 
 /// Entry "scheme" of the flow section.
-SchemeEntry scheme_entry(const Scene& scene);
+transport::SchemeEntry scheme_entry(const Scene& scene);
 /// Mobilities of local cells.
-Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh);
+fields::Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

@@ -10,9 +10,9 @@
 namespace sprekk::physics {
 
 struct FluidFlux {
-  HybridFluxParameters flux;
+  transport::HybridFluxParameters flux;
   std::vector<laws::Conduit> conduits;  ///< [local fracture face]
-  WellsParameters wells;
+  transport::WellsParameters wells;
 };
 
 /// Flow data of a scene with Flow and a fluid of constant properties. Throws an Error on every rank if the scheme is

@@ -10,6 +10,7 @@ namespace sprekk::physics {
 
 using assembly::Loop;
 using assembly::Slot;
+using mesh::Shape;
 
 namespace {
 
@@ -46,7 +47,7 @@ struct Filling {
 template <Shape shape, bool expands>
 class FractureHeat final : public assembly::Module {
  public:
-  using Plane = FacePlane<shape>;
+  using Plane = transport::FacePlane<shape>;
   static constexpr int n = Plane::n;
 
   explicit FractureHeat(FractureHeatParameters parameters) : parameters_(std::move(parameters)) {}
@@ -125,7 +126,7 @@ class FractureHeat final : public assembly::Module {
   }
 
  private:
-  using Conduction = KeptFlow<n, assembly::Slots<Slot<1 + n, 1>>>;
+  using Conduction = transport::KeptFlow<n, assembly::Slots<Slot<1 + n, 1>>>;
   using ConductionAssembler = assembly::Assembler<Conduction>;
   using FillingAssembler = assembly::Assembler<Filling<expands ? 2 : 1>>;
 

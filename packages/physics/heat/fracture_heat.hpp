@@ -23,13 +23,13 @@ struct FractureHeatParameters {
     Real at_start() const { return aperture > least ? aperture : least; }
   };
   std::vector<Face> faces = {};  ///< [local fracture face]
-  FluxScheme scheme = FluxScheme::rt0;
-  base::Expression initial = 0;            ///< initial temperature, K
-  std::optional<laws::Fluid> fluid = {};   ///< flowing filling, with "face pressure"
-  base::Expression initial_pressure = 0;   ///< initial pressure with a fluid, Pa
-  Real expansion = 0;                      ///< volumetric, 1/K, of a fluid whose flow does not depend on T
-  std::optional<FluidChange> change = {};  ///< effect of T on the fluid
-  bool widens = false;                     ///< adds "widening" of PoroelasticCoupling to the aperture
+  transport::FluxScheme scheme = transport::FluxScheme::rt0;
+  base::Expression initial = 0;                       ///< initial temperature, K
+  std::optional<laws::Fluid> fluid = {};              ///< flowing filling, with "face pressure"
+  base::Expression initial_pressure = 0;              ///< initial pressure with a fluid, Pa
+  Real expansion = 0;                                 ///< volumetric, 1/K, of a fluid whose flow does not depend on T
+  std::optional<transport::FluidChange> change = {};  ///< effect of T on the fluid
+  bool widens = false;                                ///< adds "widening" of PoroelasticCoupling to the aperture
 };
 
 /// Creates the module. For a fracture face F of area A, and for each of its ridges i, the rows of "face temperature"

@@ -1,5 +1,6 @@
 #include "physics/heat/heat.hpp"
 
+#include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "transport/balance_error.hpp"
@@ -26,17 +27,17 @@ namespace {
 constexpr const char *capacity_name = "volumetric heat capacity", *conductivity_name = "thermal conductivity",
                      *expansion_name = "thermal expansion";
 
-Properties<laws::Mobility> conductivity_of(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<laws::Mobility> conductivity_of(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
       scene, mesh, [](const Material& rock) { return rock.conducts_uniformly(); },
       [&](const Material& rock, const auto& x) { return rock.conductivity(mesh.dim(), x); });
 }
 
-SchemeEntry scheme_entry(const HeatSection& heat) {
+transport::SchemeEntry scheme_entry(const HeatSection& heat) {
   return {.section = "Heat", .name = heat.scheme, .property = "thermal conductivity"};
 }
 
-Properties<Real> capacity_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<Real> capacity_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
       scene, mesh, [](const Material& rock) { return rock.heat_capacity.is_constant(); },
       [](const Material& rock, const auto& x) {
@@ -44,7 +45,7 @@ Properties<Real> capacity_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
       });
 }
 
-Properties<Real> expansion_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<Real> expansion_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
       scene, mesh, [](const Material& rock) { return rock.thermal_expansion.is_constant(); },
       [](const Material& rock, const auto& x) {
@@ -54,7 +55,7 @@ Properties<Real> expansion_of_rock(const Scene& scene, const mesh::Mesh& mesh) {
 
 /// Thermal expansion of fluid and grains minus that of the pores, by cell. The fluid contributes only if it is
 /// constant; otherwise the storage term contains its expansion.
-Properties<Real> expansion_of_pores(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<Real> expansion_of_pores(const Scene& scene, const mesh::Mesh& mesh) {
   const Real of_fluid = scene.heat->fluid == "constant" ? scene.heat->fluid_expansion : 0;
   return by_cell(
       scene, mesh,
@@ -67,7 +68,7 @@ Properties<Real> expansion_of_pores(const Scene& scene, const mesh::Mesh& mesh) 
       });
 }
 
-bool is_any(const mesh::Mesh& mesh, const Properties<Real>& property) {
+bool is_any(const mesh::Mesh& mesh, const fields::Properties<Real>& property) {
   const auto& values = property.values;
   return base::on_any_rank(*mesh.comm, std::any_of(values.begin(), values.end(), [](Real v) { return v != 0; }));
 }
@@ -99,7 +100,7 @@ std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
 /// Temperatures of a scene, for the scale of stresses.
 std::vector<GivenTemperature> given_temperatures(const Scene& scene, const mesh::Mesh& mesh) {
   std::vector<GivenTemperature> all;
-  const auto number = [](const auto& names, const std::string& name) { return index_of(names, name); };
+  const auto number = [](const auto& names, const std::string& name) { return base::index_of(names, name); };
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (condition.temperature)
       all.push_back({.value = *condition.temperature,
@@ -114,7 +115,7 @@ std::vector<GivenTemperature> given_temperatures(const Scene& scene, const mesh:
 /// Heat sources and fluxes of a scene, each with the stationary temperature change over the domain per unit.
 /// Collective.
 std::vector<GivenTemperature> given_rates(const Scene& scene, const mesh::Mesh& mesh,
-                                          const Properties<laws::Mobility>& conductivity) {
+                                          const fields::Properties<laws::Mobility>& conductivity) {
   Real least = std::numeric_limits<Real>::infinity();
   for (const auto& each : conductivity.values)
     for (int i = 0; i < mesh.dim(); ++i) least = std::min(least, each.value[i][i]);
@@ -123,15 +124,15 @@ std::vector<GivenTemperature> given_rates(const Scene& scene, const mesh::Mesh& 
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (condition.heat_flux)
       all.push_back({.value = *condition.heat_flux,
-                     .boundary = index_of(mesh.boundary_names, condition.boundary),
-                     .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1,
+                     .boundary = base::index_of(mesh.boundary_names, condition.boundary),
+                     .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1,
                      .per_rate = per_flux});
   if (!is_zero(scene.heat->source)) all.push_back({.value = scene.heat->source, .per_rate = size * per_flux});
   return all;
 }
 
-void add_fractures(const Setting& setting, const std::vector<FractureHeatParameters::Face>& faces, FluxScheme scheme,
-                   Modules& modules) {
+void add_fractures(const Setting& setting, const std::vector<FractureHeatParameters::Face>& faces,
+                   transport::FluxScheme scheme, Modules& modules) {
   const auto& [scene, mesh, start] = setting;
   FractureHeatParameters fractures{.faces = faces,
                                    .scheme = scheme,
@@ -150,7 +151,7 @@ void add_fractures(const Setting& setting, const std::vector<FractureHeatParamet
 void add_expansion(const Setting& setting, std::vector<GivenTemperature> given, Modules& modules) {
   const auto& [scene, mesh, start] = setting;
   const auto initial = scene.heat->initial_temperature.value_or(0);
-  Properties<Real> of_rock, of_pores;
+  fields::Properties<Real> of_rock, of_pores;
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
     of_rock = expansion_of_rock(scene, mesh);
     if (scene.flow) of_pores = expansion_of_pores(scene, mesh);
@@ -204,13 +205,13 @@ void HeatSection::describe(base::Section& s) {
       "injection temperatures by the names of wells of \"Flow\"; other wells inject fluid at the local temperature");
 }
 
-std::optional<FluidChange> HeatSection::fluid_change() const {
+std::optional<transport::FluidChange> HeatSection::fluid_change() const {
   if (fluid == "constant") return {};
   const auto response = fluid == "water" ? response_of_water(reference_temperature)
                                          : laws::FluidResponse{.reference = reference_temperature,
                                                                .expansion = fluid_expansion,
                                                                .thinning = viscosity_decay};
-  return FluidChange{"temperature", response, initial_temperature.value_or(0)};
+  return transport::FluidChange{"temperature", response, initial_temperature.value_or(0)};
 }
 
 void Heat::Sections::describe(base::Section& s) {
@@ -238,10 +239,10 @@ void Heat::Joint::describe(base::Section& s) {
       "volumetric heat capacity of the fracture filling, with \"Heat\"; absent: the value of the fluid of \"Flow\"");
 }
 
-bool Heat::Rock::conducts_uniformly() const { return is_uniform_tensor(thermal_conductivity); }
+bool Heat::Rock::conducts_uniformly() const { return transport::is_uniform_tensor(thermal_conductivity); }
 
 laws::Mobility Heat::Rock::conductivity(int dim, const std::array<Real, 3>& x) const {
-  return tensor_at("thermal conductivity", thermal_conductivity, dim, x);
+  return transport::tensor_at("thermal conductivity", thermal_conductivity, dim, x);
 }
 
 void Heat::Region::describe(base::Section& s) {
@@ -278,29 +279,29 @@ bool Heat::is_in(const Scene& scene) { return scene.heat.has_value(); }
 
 bool Heat::has_initial_state(const Scene& scene) { return !is_in(scene) || scene.heat->initial_temperature; }
 
-std::unique_ptr<MeshError> Heat::mesh_error(const Setting& setting, assembly::System& system) {
+std::unique_ptr<estimate::MeshError> Heat::mesh_error(const Setting& setting, assembly::System& system) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return nullptr;
-  HybridDiffusionParameters rock;
+  transport::HybridDiffusionParameters rock;
   rock.initial = scene.heat->initial_temperature;
-  Properties<Real> capacity;
+  fields::Properties<Real> capacity;
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
     rock.mobility = conductivity_of(scene, mesh);
     capacity = capacity_of_rock(scene, mesh);
   });
-  rock.scheme = flux_scheme(scheme_entry(*scene.heat), mesh, rock.mobility).scheme;
-  SPREKK_CHECK(rock.scheme == FluxScheme::rt0,
+  rock.scheme = transport::flux_scheme(scheme_entry(*scene.heat), mesh, rock.mobility).scheme;
+  SPREKK_CHECK(rock.scheme == transport::FluxScheme::rt0,
                "{}: the estimate of the error of heat is of triangles and tetrahedra, with the scheme rt0",
                scene.origin);
   if (!is_zero(scene.heat->source)) rock.source = {scene.heat->source};
-  BalanceErrorParameters parameters{.field = "temperature",
-                                    .flux = "heat flux",
-                                    .power = "W*K",
-                                    .inflows = "heat_inflows",
-                                    .potential = {"temperature", "temperature"},
-                                    .flow = {"heat flow", "heat"},
-                                    .error = {.flow = {.rock = std::move(rock)}},
-                                    .start = start};
+  transport::BalanceErrorParameters parameters{.field = "temperature",
+                                               .flux = "heat flux",
+                                               .power = "W*K",
+                                               .inflows = "heat_inflows",
+                                               .potential = {"temperature", "temperature"},
+                                               .flow = {"heat flow", "heat"},
+                                               .error = {.flow = {.rock = std::move(rock)}},
+                                               .start = start};
   auto& error = parameters.error;
   if (!mesh.fracture_names.empty())
     for (const auto& face : fillings(setting)) {
@@ -314,7 +315,7 @@ std::unique_ptr<MeshError> Heat::mesh_error(const Setting& setting, assembly::Sy
     auto fluid = fluid_flux(setting);
     parameters.carrier = {std::move(fluid.flux), std::move(fluid.conduits), *scene.heat->fluid_capacity};
   }
-  return make_balance_error(system, std::move(parameters));
+  return transport::make_balance_error(system, std::move(parameters));
 }
 
 std::vector<CarriedQuantity> Heat::carried(const Scene& scene) {
@@ -357,8 +358,8 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
   const auto& mesh = setting.mesh;
   if (!is_in(scene)) return;
   const auto& heat = *scene.heat;
-  Properties<laws::Mobility> conductivity;
-  Properties<Capacity> capacity;
+  fields::Properties<laws::Mobility> conductivity;
+  fields::Properties<transport::Capacity> capacity;
   base::collectively(*mesh.comm, [&] {
     conductivity = conductivity_of(scene, mesh);
     const auto values = capacity_of_rock(scene, mesh);
@@ -367,8 +368,8 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
   });
   auto given = given_temperatures(scene, mesh);
   for (auto& rate : given_rates(scene, mesh, conductivity)) given.push_back(std::move(rate));
-  const auto chosen = flux_scheme(scheme_entry(heat), mesh, conductivity);
-  HybridDiffusionParameters conduction{
+  const auto chosen = transport::flux_scheme(scheme_entry(heat), mesh, conductivity);
+  transport::HybridDiffusionParameters conduction{
       .name = "heat conduction",
       .field = "temperature",
       .unit = "K",
@@ -389,11 +390,11 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
   std::vector<FractureHeatParameters::Face> faces;
   if (!mesh.fracture_names.empty()) faces = fillings(setting);
   for (const auto& face : faces) conduction.exchange.push_back(2 * face.conductivity / face.aperture);
-  modules.push_back(make_hybrid_diffusion(mesh.shape, std::move(conduction)));
-  modules.push_back(make_storage({.name = "heat storage",
-                                  .field = "temperature",
-                                  .capacity = std::move(capacity),
-                                  .initial = heat.initial_temperature.value_or(0)}));
+  modules.push_back(transport::make_hybrid_diffusion(mesh.shape, std::move(conduction)));
+  modules.push_back(transport::make_storage({.name = "heat storage",
+                                             .field = "temperature",
+                                             .capacity = std::move(capacity),
+                                             .initial = heat.initial_temperature.value_or(0)}));
   if (!mesh.fracture_names.empty()) add_fractures(setting, faces, chosen.scheme, modules);
   add_expansion(setting, std::move(given), modules);
 }
@@ -402,7 +403,7 @@ std::vector<std::string> Heat::warnings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
   std::vector<std::string> all;
-  const auto skew = scheme_warning(scheme_entry(*scene.heat), mesh, conductivity_of(scene, mesh));
+  const auto skew = transport::scheme_warning(scheme_entry(*scene.heat), mesh, conductivity_of(scene, mesh));
   if (!skew.empty()) all.push_back(scene.origin + ": " + skew);
   const auto change = scene.heat->fluid_change();
   if (scene.flow && change && change->initial.is_constant() && Mechanics::is_in(scene)) {

@@ -31,7 +31,7 @@ struct HeatSection {
   std::map<std::string, WellTemperature> wells;  ///< by names of the wells of Flow
   void describe(base::Section& section);
   /// Effect of the temperature on density and viscosity; none: constant fluid.
-  std::optional<FluidChange> fluid_change() const;
+  std::optional<transport::FluidChange> fluid_change() const;
 };
 
 struct Heat : Physics<Heat> {
@@ -81,9 +81,9 @@ struct Heat : Physics<Heat> {
   static bool has_initial_state(const Scene& scene);
   static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
   static std::string no_error_estimate(const Scene& scene);
-  static std::vector<QuantityKind> quantities();
-  static std::string refuses(const Scene& scene, const Functional& J);
-  static std::unique_ptr<MeshError> mesh_error(const Setting& setting, assembly::System& system);
+  static std::vector<estimate::QuantityKind> quantities();
+  static std::string refuses(const Scene& scene, const estimate::Functional& J);
+  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static std::vector<CarriedQuantity> carried(const Scene& scene);
   static std::string takes_friction_power(const Scene& scene);
   /// Name of the entry that is incompatible with BDF2; empty: none.

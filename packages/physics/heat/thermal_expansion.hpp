@@ -19,10 +19,10 @@ struct GivenTemperature {
 };
 
 struct ThermalStressParameters {
-  Properties<Real> expansion;                ///< [cell] linear expansion coefficient alpha_T, 1/K
-  Properties<laws::Elasticity> elasticity;   ///< drained
-  base::Expression initial = 0;              ///< T_0 of zero thermal stress, K
-  std::vector<GivenTemperature> given = {};  ///< determines the stress scale
+  fields::Properties<Real> expansion;               ///< [cell] linear expansion coefficient alpha_T, 1/K
+  fields::Properties<laws::Elasticity> elasticity;  ///< drained
+  base::Expression initial = 0;                     ///< T_0 of zero thermal stress, K
+  std::vector<GivenTemperature> given = {};         ///< determines the stress scale
 };
 
 /// Creates the module of thermal stress. It adds -(T_K - T_0) dV_K/du to the rows of all displacements, where V_K is
@@ -31,7 +31,8 @@ struct ThermalStressParameters {
 std::unique_ptr<assembly::Module> make_thermal_stress(const mesh::Mesh& mesh, ThermalStressParameters parameters);
 
 struct PoreExpansionParameters {
-  Properties<Real> expansion;    ///< [cell] beta = porosity beta_fluid + (Biot coefficient - porosity) 3 alpha_T, 1/K
+  fields::Properties<Real>
+      expansion;                 ///< [cell] beta = porosity beta_fluid + (Biot coefficient - porosity) 3 alpha_T, 1/K
   base::Expression initial = 0;  ///< initial temperature, K
 };
 

@@ -35,7 +35,7 @@ struct BoundaryTraction {
 };
 
 struct BulkMomentumParameters {
-  Properties<laws::Elasticity> elasticity = {};  ///< of cells
+  fields::Properties<laws::Elasticity> elasticity = {};  ///< of cells
   BodyForce body_force = {};
   std::vector<BoundaryTraction> tractions = {};
   InitialStress initial_stress = {};

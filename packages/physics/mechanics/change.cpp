@@ -1,4 +1,5 @@
 // Change of the mechanical part of a scene in a live model.
+#include "base/names.hpp"
 #include "assembly/tip_cell.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint.hpp"
@@ -97,7 +98,7 @@ std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, co
                     changed.begin()->first));
   for (const auto& [name, filled] : changed) {
     const char* what = filled ? "is filled" : "gets other elastic constants";
-    const auto region = index_of(mesh.region_names, name);
+    const auto region = base::index_of(mesh.region_names, name);
     for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k)
       if (meets[k * n_regions + region])
         lines.push_back(

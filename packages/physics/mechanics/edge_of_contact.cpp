@@ -53,7 +53,7 @@ class Face {
 
 /// Compliance C, m/Pa.
 Real compliance(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
-                const Properties<laws::Elasticity>& elasticity) {
+                const fields::Properties<laws::Elasticity>& elasticity) {
   Real sum = 0;
   for (const LocalIndex cell : face.cell) {
     const auto& rock = elasticity.of_cell(mesh, cell);

@@ -11,8 +11,8 @@ namespace sprekk::physics {
 
 /// Data for contact within faces.
 struct ContactAlongFaces {
-  Properties<laws::Elasticity> elasticity;   ///< of local cells
-  std::vector<const base::Expression*> gap;  ///< g0 of owned fracture faces, m; null: constant on the face
+  fields::Properties<laws::Elasticity> elasticity;  ///< of local cells
+  std::vector<const base::Expression*> gap;         ///< g0 of owned fracture faces, m; null: constant on the face
 };
 
 /// Estimates the error due to one contact state per face. Adds to `bubbles`, m, the normal opening of closed faces that

@@ -12,7 +12,7 @@
 namespace sprekk::physics {
 
 struct InterfaceTractionBalanceParameters {
-  Properties<laws::Elasticity> elasticity;  ///< all members as in the bulk: bubbles test every load
+  fields::Properties<laws::Elasticity> elasticity;  ///< all members as in the bulk: bubbles test every load
   BodyForce body_force = {};
   InitialStress initial_stress = {};
   FluidPressure fluid_pressure = {};

@@ -1,5 +1,6 @@
 #include "physics/mechanics/mechanics.hpp"
 
+#include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/tips.hpp"
@@ -25,7 +26,7 @@ Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const ba
 
 /// Joint parameters of faces: the law at the face centre, with the face means of the gap and of the initial plastic
 /// jump, since jumps are means too.
-Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
   const bool own = !scene.own_joints.empty();  // groups: single fractures or fracture sets
   const auto section = [&](int group) -> const Fracture& {
     return scene.fractures.at(mesh.fracture_names[own ? mesh.single_fractures[group].set : group]);
@@ -36,7 +37,7 @@ Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
   std::vector<int> group_of;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
     group_of.push_back(own ? mesh.fracture_faces[f].single : mesh.fracture_faces[f].fracture);
-  auto result = properties<JointParameters>(
+  auto result = fields::properties<JointParameters>(
       static_cast<int>(own ? mesh.single_fractures.size() : mesh.fracture_names.size()), group_of,
       [&](int fracture) {
         const auto& jump = section(fracture).plastic_jump;
@@ -99,8 +100,8 @@ std::string power_to(const Scene& scene) {
 }
 
 /// Applies VolumetricSplit to all cells. Returns the remaining moduli.
-Properties<Real> split(Properties<laws::Elasticity>& elasticity, int order) {
-  Properties<Real> modulus{{}, elasticity.number};
+fields::Properties<Real> split(fields::Properties<laws::Elasticity>& elasticity, int order) {
+  fields::Properties<Real> modulus{{}, elasticity.number};
   for (auto& law : elasticity.values) {
     const VolumetricSplit split(law, order);
     law = split.elasticity;
@@ -116,19 +117,20 @@ MechanicsParameters parameters_of(const Setting& setting) {
                               .initial_stress = initial_stress(scene, mesh),
                               .keeps_stress = scene.keeps_stress};
   const int order = mesh::order(mesh.shape);
-  const auto modulus = has_solid_pressure(scene, order) ? split(bulk.elasticity, order) : Properties<Real>();
+  const auto modulus = has_solid_pressure(scene, order) ? split(bulk.elasticity, order) : fields::Properties<Real>();
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (condition.is_loaded())
-      bulk.tractions.push_back({.boundary = index_of(mesh.boundary_names, condition.boundary),
-                                .value = condition.traction,
-                                .pressure = condition.confining_pressure,
-                                .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1});
+      bulk.tractions.push_back(
+          {.boundary = base::index_of(mesh.boundary_names, condition.boundary),
+           .value = condition.traction,
+           .pressure = condition.confining_pressure,
+           .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1});
   std::map<std::string, ElasticFoundationParameters> foundations;
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (const auto& k = condition.foundation_stiffness; !k.empty())
-      foundations[name] = {.boundary = index_of(mesh.boundary_names, condition.boundary),
+      foundations[name] = {.boundary = base::index_of(mesh.boundary_names, condition.boundary),
                            .stiffness = {k[0], k[1], k.size() > 2 ? k[2] : 0},
-                           .region = condition.region ? index_of(mesh.region_names, *condition.region) : -1};
+                           .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1};
   if (mesh.fracture_names.empty()) return {.bulk = bulk, .foundations = foundations, .solid_modulus = modulus};
   const auto fluid = fluid_pressure(scene, mesh.fracture_names);
   const bool unknown = has_unknown_pressure(scene);
@@ -195,7 +197,7 @@ bool Mechanics::is_in(const Scene& scene) { return !scene.bulk.rigid && !(scene.
 
 bool Mechanics::needs_facets(const Scene& scene) { return is_in(scene) && has_solid_pressure(scene); }
 
-Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(
       scene, mesh, [](const Material& rock) { return rock.is_uniformly_elastic(); },
       [](const Material& rock, const auto& x) { return rock.elasticity(x); });
@@ -321,7 +323,7 @@ std::string Mechanics::no_error_estimate(const Scene& scene) {
   return has_solid_pressure(scene) ? "is not available in nearly incompressible rock" : "";
 }
 
-std::vector<QuantityKind> Mechanics::quantities() {
+std::vector<estimate::QuantityKind> Mechanics::quantities() {
   return {{"slip", "m", "m", "mean plastic slip over the area of fractures"},
           {"opening", "m", "m", "mean normal jump over the area of fractures"},
           {"normal force", "N", "N/m", "integral of compression over fractures"},
@@ -330,7 +332,7 @@ std::vector<QuantityKind> Mechanics::quantities() {
           {"stress", "sqrt(J)", "sqrt(J/m)", "square root of the integral of s : C^-1 s, twice the elastic energy"}};
 }
 
-std::string Mechanics::refuses(const Scene& scene, const Functional& J) {
+std::string Mechanics::refuses(const Scene& scene, const estimate::Functional& J) {
   if (!J.well.empty()) return fmt::format("\"well\": must be absent: \"{}\" takes none", J.what);
   const bool of_boundary = J.what == "reaction", of_all = of_boundary || J.what == "stress";
   if (of_all && !J.fractures.empty()) return fmt::format("\"fractures\": must be absent: \"{}\" takes none", J.what);

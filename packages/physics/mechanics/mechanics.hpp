@@ -109,8 +109,8 @@ struct Mechanics : Physics<Mechanics> {
   static bool is_in(const Scene& scene);
   static bool needs_facets(const Scene& scene);
   static std::string no_error_estimate(const Scene& scene);
-  static std::vector<QuantityKind> quantities();
-  static std::string refuses(const Scene& scene, const Functional& J);
+  static std::vector<estimate::QuantityKind> quantities();
+  static std::string refuses(const Scene& scene, const estimate::Functional& J);
   static std::vector<std::string> fixed_entries();
   static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);
   static std::vector<std::string> refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
@@ -126,7 +126,7 @@ struct Mechanics : Physics<Mechanics> {
 };
 
 /// Elasticity of local cells.
-Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh);
+fields::Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh);
 
 /// Returns whether the scene has a "solid pressure" for displacements of an order; 1: of any order. Not available if
 /// another physics has unknowns on facets, because the facet bubbles would have to include its stress.

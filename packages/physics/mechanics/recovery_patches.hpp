@@ -136,7 +136,7 @@ class RecoveryPatches {
   };
 
   /// Builds the patches. Throws an Error if a fit is singular. Collective.
-  RecoveryPatches(RCP<const mesh::Mesh> mesh, Properties<laws::Elasticity> elasticity)
+  RecoveryPatches(RCP<const mesh::Mesh> mesh, fields::Properties<laws::Elasticity> elasticity)
       : mesh_(mesh), elasticity_(std::move(elasticity)), tip_modes_(*mesh) {
     if constexpr (order == 1)
       for (const LocalIndex cell : assembly::tip_cells(*mesh)) tip_cells_.emplace(cell, Tip(*mesh, cell));
@@ -383,7 +383,7 @@ class RecoveryPatches {
   static constexpr Real regularisation = order == 1 ? 0.3 : shape == mesh::Shape::tetrahedron10 ? 0.06 : 0.01;
 
   RCP<const mesh::Mesh> mesh_;
-  Properties<laws::Elasticity> elasticity_;
+  fields::Properties<laws::Elasticity> elasticity_;
   TipModes<dim, order> tip_modes_;
   std::unordered_map<LocalIndex, Tip> tip_cells_;  // local cells with tip functions
   std::vector<Patch> patches_;                     // around the corners of owned cells

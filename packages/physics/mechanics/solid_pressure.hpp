@@ -10,8 +10,8 @@
 namespace sprekk::physics {
 
 struct SolidPressureParameters {
-  Properties<laws::Elasticity> elasticity;  ///< [cell] part treated by displacements alone
-  Properties<Real> modulus;                 ///< [cell] kappa, Pa, the remaining part of lambda; 0: none
+  fields::Properties<laws::Elasticity> elasticity;  ///< [cell] part treated by displacements alone
+  fields::Properties<Real> modulus;                 ///< [cell] kappa, Pa, the remaining part of lambda; 0: none
 };
 
 /// Split of the elasticity of nearly incompressible rock. It applies if Poisson's ratio exceeds 0.45 with displacements

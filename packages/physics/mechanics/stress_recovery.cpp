@@ -27,7 +27,7 @@ class Recovery final : public StressRecovery {
                        n_corners = Patches::n_corners;
 
   Recovery(RCP<const mesh::Mesh> mesh, const ByField<const fields::Layout*>& layouts,
-           Properties<laws::Elasticity> elasticity)
+           fields::Properties<laws::Elasticity> elasticity)
       : mesh_(mesh), layouts_(layouts), patches_(mesh, std::move(elasticity)) {
     if (layouts[bubble]) find_bubbles();
   }
@@ -244,7 +244,7 @@ class Recovery final : public StressRecovery {
 
 std::unique_ptr<StressRecovery> make_stress_recovery(RCP<const mesh::Mesh> mesh,
                                                      const ByField<const fields::Layout*>& layouts,
-                                                     Properties<laws::Elasticity> elasticity) {
+                                                     fields::Properties<laws::Elasticity> elasticity) {
   const Shape shape = mesh->shape;
   return mesh::for_shape(shape, [&](auto s) -> std::unique_ptr<StressRecovery> {
     return std::make_unique<Recovery<s()>>(mesh, layouts, std::move(elasticity));

@@ -51,6 +51,6 @@ class StressRecovery {
 /// Creates the recovery. The result holds references to the layouts. Collective.
 std::unique_ptr<StressRecovery> make_stress_recovery(RCP<const mesh::Mesh> mesh,
                                                      const ByField<const fields::Layout*>& layouts,
-                                                     Properties<laws::Elasticity> elasticity);
+                                                     fields::Properties<laws::Elasticity> elasticity);
 
 }  // namespace sprekk::physics

@@ -10,8 +10,8 @@
 namespace sprekk::physics {
 
 struct GivenPressureParameters {
-  Properties<Real> biot;  ///< [cell] Biot's coefficient
-  Real initial = 0;       ///< pressure of the initial state, Pa
+  fields::Properties<Real> biot;  ///< [cell] Biot's coefficient
+  Real initial = 0;               ///< pressure of the initial state, Pa
 };
 
 /// Module of a prescribed pressure. It adds -p_K dV_K/du - p_f dW_f/du to the rows of all displacements, with V_K and

@@ -121,7 +121,7 @@ class PoroelasticCoupling final : public assembly::Module {
   }
 
   void initial(const assembly::Rows& x) const override {
-    put_initial(*mesh_, parameters_.stabilisation.initial, x[pressures_[0]], x[pressures_[1]]);
+    transport::put_initial(*mesh_, parameters_.stabilisation.initial, x[pressures_[0]], x[pressures_[1]]);
   }
 
   /// Updates the history in the present state, also in new cells.
@@ -208,7 +208,7 @@ void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
   stabilisation_ = mesh::for_corners(mesh_->shape, [&](auto shape) {
     return assembly::Term(
         context, Loop::cells, blocks, blocks, true,
-        [op = stabilising_flow<shape()>(*mesh_, parameters_.stabilisation)](const assembly::State& state) {
+        [op = transport::stabilising_flow<shape()>(*mesh_, parameters_.stabilisation)](const assembly::State& state) {
           auto at = op;
           at.rate = state.rate;
           return at;

@@ -12,8 +12,8 @@ namespace sprekk::physics {
 
 struct PoroelasticCouplingParameters {
   /// Data of cells. Total stress (Biot 1941): sigma(u) + sigma_0 - biot (p - p_0) I.
-  Properties<Real> biot;        ///< Biot's coefficient alpha in [0, 1]
-  Stabilisation stabilisation;  ///< includes p_0
+  fields::Properties<Real> biot;           ///< Biot's coefficient alpha in [0, 1]
+  transport::Stabilisation stabilisation;  ///< includes p_0
 };
 
 /// Creates the module that couples "displacement" (with "side bubble" and "tip displacement" if present) to "pressure"

@@ -13,8 +13,8 @@ namespace {
 constexpr const char* biot_name = "Biot coefficient";
 
 /// Biot's coefficients of cells. Throws an Error on all ranks. Collective.
-Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
-  Properties<Real> values;
+fields::Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
+  fields::Properties<Real> values;
   base::collectively(*mesh.comm, [&] {
     values = by_cell(
         scene, mesh, [](const Material& rock) { return rock.biot.is_constant(); },
@@ -41,7 +41,7 @@ void Poroelasticity::Rock::describe(base::Section& s) {
       "pressure), and the pore volume grows by alpha div u (Biot 1941); typical: 0.35 to 0.8 (material library)");
 }
 
-Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh) {
+transport::Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh) {
   if (!Poroelasticity::is_in(scene)) return {};
   const auto alpha = biot(scene, mesh);
   const auto laws = elasticity(scene, mesh);
@@ -50,9 +50,10 @@ Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh) {
     const auto& law = laws.of_cell(mesh, c);
     softness.push_back(alpha.of_cell(mesh, c) * alpha.of_cell(mesh, c) / (law.lambda + 2 * law.G));
   }
-  const Properties<laws::Mobility> any{
+  const fields::Properties<laws::Mobility> any{
       std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1))};
-  const auto scheme = flux_scheme(scheme_entry(scene), mesh, scene.flow ? mobility(scene, mesh) : any).scheme;
+  const auto scheme =
+      transport::flux_scheme(scheme_entry(scene), mesh, scene.flow ? mobility(scene, mesh) : any).scheme;
   return {std::move(softness), initial_pressure(scene), scheme};
 }
 

@@ -20,6 +20,6 @@ struct Poroelasticity : Physics<Poroelasticity> {
 };
 
 /// Stabilisation of the fluid pressure in deforming rock; empty without poroelasticity. Collective.
-Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh);
+transport::Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

@@ -61,10 +61,10 @@ Real true_error(model::Model& model, const Exact& exact) {
   for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
     Real X[mesh::n_nodes(shape)][dim], q[n] = {};
     assembly::gather_host<shape>(mesh, c, X);
-    const physics::CellFaces<shape> faces(X);
-    physics::FlowMatrix<shape> matrix(faces, laws::Mobility::isotropic(1), physics::FluxScheme::rt0);
+    const transport::CellFaces<shape> faces(X);
+    transport::FlowMatrix<shape> matrix(faces, laws::Mobility::isotropic(1), transport::FluxScheme::rt0);
     for (int k = 0; k < n; ++k)
-      if (resistance.count(c * n + k)) physics::add_resistance(matrix.T, k, resistance[c * n + k]);
+      if (resistance.count(c * n + k)) transport::add_resistance(matrix.T, k, resistance[c * n + k]);
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
         q[i] += matrix.T[i][j] * (p["pressure"][c] - p["face pressure"][mesh.facets->of_cell[c * n + j]]);
@@ -86,7 +86,7 @@ Real true_error(model::Model& model, const Exact& exact) {
       }
   }
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-    const physics::FacePlane<shape> plane(mesh, f, exact.transmissivity, physics::FluxScheme::rt0);
+    const transport::FacePlane<shape> plane(mesh, f, exact.transmissivity, transport::FluxScheme::rt0);
     const auto& face = mesh.fracture_faces[f];
     Real q[dim] = {};
     for (int i = 0; i < dim; ++i)
