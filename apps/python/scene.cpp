@@ -6,7 +6,7 @@
 #include "base/units.hpp"
 #include "base/value.hpp"
 #include "base/xml.hpp"
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 #include "model/run.hpp"
 #include "physics/material_library.hpp"
 
@@ -157,9 +157,9 @@ py::dict described(const base::SectionSpecification& section) {
 }
 
 /// Returns the columns of a curve, [state], with the titles printed by `sprekk point`.
-py::dict columns_of(const model::PointCurve& curve) {
+py::dict columns_of(const laboratory::PointCurve& curve) {
   std::ostringstream csv;
-  model::write_csv(csv, {curve});
+  laboratory::write_csv(csv, {curve});
   std::istringstream lines(csv.str());
   std::string line, title;
   std::getline(lines, line);
@@ -253,15 +253,15 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("folder", &SceneHandle::folder);
 
   m.def("specification", [] { return described(base::specification<model::Scene>("Sprekk")); });
-  m.def("point_specification", [] { return described(base::specification<model::PointScene>("Sprekk")); });
+  m.def("point_specification", [] { return described(base::specification<laboratory::PointScene>("Sprekk")); });
   m.def(
       "drive",
       [](const py::dict& entries, const std::string& origin, const Overrides& overrides) {
-        const auto scene = model::point_scene_of(list_of(entries), origin, overrides);
-        std::vector<model::PointCurve> curves;
+        const auto scene = laboratory::point_scene_of(list_of(entries), origin, overrides);
+        std::vector<laboratory::PointCurve> curves;
         {
           const py::gil_scoped_release free;
-          curves = model::drive_points(scene);
+          curves = laboratory::drive_points(scene);
         }
         py::list all;
         for (auto& curve : curves) {

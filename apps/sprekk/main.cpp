@@ -6,7 +6,7 @@
 #include "physics/material_library.hpp"
 #include "model/factor_of_safety.hpp"
 #include "model/network.hpp"
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 #include "model/run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -121,9 +121,9 @@ int run_scene(const Arguments& arguments, RCP<const Comm> comm) {
 
 /// Prints the curves, then where slip jumped, and ends with an error if a step had no state.
 void drive_points(const model::RunOptions& options, const Comm& comm) {
-  const auto curves = model::drive_points(model::read_point_scene(comm, options.scene, options.overrides));
+  const auto curves = laboratory::drive_points(laboratory::read_point_scene(comm, options.scene, options.overrides));
   const bool speaks = comm.getRank() == 0;
-  if (speaks) model::write_csv(std::cout, curves);
+  if (speaks) laboratory::write_csv(std::cout, curves);
   std::cout.flush();
   std::string failures;
   for (const auto& curve : curves) {

@@ -9,7 +9,7 @@
 #include "mesh/msh_reader.hpp"
 #include "model/adaptation.hpp"
 #include "model/checkpointing.hpp"
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 #include "model/steps.hpp"
 
 #include <fmt/ranges.h>
@@ -348,7 +348,7 @@ std::string mesh_info(const std::string& path, const std::vector<std::string>& f
 }
 
 std::string reference() {
-  auto point = base::specification<PointPath>("Point");
+  auto point = base::specification<laboratory::PointPath>("Point");
   point.meaning =
       "path of a joint at one point, for `sprekk point` only; several points: sections with these entries in "
       "`Specimens`";
@@ -358,7 +358,8 @@ std::string reference() {
 }
 
 std::string schema() {
-  return base::to_relax_ng({base::specification<Scene>("Sprekk"), base::specification<PointScene>("Sprekk")});
+  return base::to_relax_ng(
+      {base::specification<Scene>("Sprekk"), base::specification<laboratory::PointScene>("Sprekk")});
 }
 
 }  // namespace sprekk::model

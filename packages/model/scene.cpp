@@ -14,69 +14,6 @@
 
 namespace sprekk::model {
 
-void Time::describe(base::Section& s) {
-  s.entry(start, "start", "s", "time of the initial state");
-  s.entry(end, "end", "s", "end time of the last step");
-  s.entry(steps, "steps", "-", base::between(1, 10000000), "number of equal steps from start to end; absent: 1");
-  s.entry(schedule, "schedule", "s",
-          "end times of all steps, increasing, in place of end and steps; with tolerance: required end times of steps");
-  s.entry(tolerance, "tolerance", "-", base::between(1e-8, 0.5),
-          "relative time error of adaptive steps, in place of steps; see docs/use/time_and_solver.md");
-  s.entry(newton_iterations, "target Newton iterations", "-", base::between(1, 1000),
-          "target number of Newton iterations per adaptive step: more iterations shorten the steps, fewer lengthen "
-          "them; the tolerance also limits the length");
-  s.entry(first_step, "first step", "s", base::positive(),
-          "length of the first adaptive step; absent: a fraction of the total time");
-  s.entry(smallest_step, "smallest step", "s", base::positive(),
-          "minimum length of adaptive steps, accepted with any error; absent: 1e-9 of the total time");
-  s.entry(largest_step, "largest step", "s", base::positive(),
-          "maximum length of adaptive steps; absent: the total time");
-  s.choice(scheme, "scheme", {"implicit Euler", "BDF2"},
-           "scheme of time derivatives; implicit Euler: first order; BDF2: second order");
-  stepping.describe(s);
-  if (!s.complete()) return;
-  describe_choice(s);
-  Real last = start;
-  for (Real t : times()) {
-    if (!(t > last)) {
-      s.fail(schedule ? "schedule" : "end",
-             fmt::format("is {} after {}; times must increase, from \"start\" on", t, last));
-      break;
-    }
-    last = t;
-  }
-  if (schedule && schedule->empty()) s.fail("schedule", "is empty; give at least one time");
-}
-
-/// Checks the entries for adaptive steps and reports incompatible ones.
-void Time::describe_choice(base::Section& s) const {
-  if (chooses_steps() && steps)
-    s.fail("steps", fmt::format("is {}: not allowed with \"{}\" for adaptive steps; leave out one of them", *steps,
-                                tolerance ? "tolerance" : "target Newton iterations"));
-  const std::pair<const char*, const std::optional<Real>&> lengths[] = {
-      {"first step", first_step}, {"smallest step", smallest_step}, {"largest step", largest_step}};
-  for (const auto& [name, length] : lengths)
-    if (length && !chooses_steps())
-      s.fail(name, fmt::format("is {} s: needs \"tolerance\" or \"target Newton iterations\"", *length));
-  if (smallest_step && largest_step && *smallest_step > *largest_step)
-    s.fail("smallest step",
-           fmt::format("is {} s, must be at most the \"largest step\", {} s", *smallest_step, *largest_step));
-  if (first_step && smallest_step && *first_step < *smallest_step)
-    s.fail("first step",
-           fmt::format("is {} s, must be at least the \"smallest step\", {} s", *first_step, *smallest_step));
-  if (first_step && largest_step && *first_step > *largest_step)
-    s.fail("first step",
-           fmt::format("is {} s, must be at most the \"largest step\", {} s", *first_step, *largest_step));
-}
-
-std::vector<Real> Time::times() const {
-  if (schedule) return *schedule;
-  std::vector<Real> times;
-  const int n = steps.value_or(1);
-  for (int k = 1; k <= n; ++k) times.push_back(k == n ? end : start + (end - start) * k / n);
-  return times;
-}
-
 void CheckpointTimes::describe(base::Section& s) {
   s.entry(steps, "steps", "-", base::at_least(1), "interval of checkpoints in steps");
   s.entry(minutes, "minutes", "min", base::positive(), "interval of checkpoints in wall-clock time");

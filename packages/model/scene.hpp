@@ -10,7 +10,7 @@
 #include "model/stages.hpp"
 #include "physics/scene.hpp"
 #include "solve/newton.hpp"
-#include "solve/time_stepping.hpp"
+#include "solve/time.hpp"
 
 #include <map>
 #include <memory>
@@ -25,6 +25,7 @@ using physics::Bulk;
 using physics::Fracture;
 using physics::Material;
 using physics::Region;
+using solve::Time;
 
 /// Mesh from a gmsh file, instead of a box.
 struct MeshFile {
@@ -41,23 +42,6 @@ struct MeshFile {
   std::vector<std::string> periodic;          ///< boundaries in pairs, see mesh::tie_periodic()
   std::map<std::string, Fracture> fractures;  ///< physical groups that are fractures
   void describe(base::Section& section);
-};
-
-struct Time {
-  Real start = 0, end = 1;
-  std::optional<int> steps;  ///< absent: one, if their lengths are not chosen adaptively
-  std::optional<std::vector<Real>> schedule;
-  std::optional<Real> tolerance;         ///< relative error, for adaptive step lengths
-  std::optional<int> newton_iterations;  ///< target per step, for adaptive step lengths
-  std::optional<Real> first_step, smallest_step, largest_step;
-  std::string scheme = "implicit Euler";  ///< or BDF2, for storage rates
-  solve::TimeSteppingOptions stepping;
-  void describe(base::Section& section);
-  bool chooses_steps() const { return tolerance || newton_iterations; }
-  std::vector<Real> times() const;  ///< ends of all steps, s; for adaptive steps, the prescribed times
-
- private:
-  void describe_choice(base::Section& section) const;
 };
 
 /// Intervals of checkpoints: the first condition met applies; a checkpoint also follows the last step.

@@ -2,7 +2,7 @@
 // JSON, in CPU seconds and law evaluations per step. A turn of the path has 64 steps. Early and late turns
 // alternate, so that both run under the same machine load. Each early path begins with another turn, because the
 // branch predictor learns repeated paths.
-#include "model/point_driver.hpp"
+#include "laboratory/point_driver.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <nlohmann/json.hpp>
@@ -31,7 +31,7 @@ struct Cost {
 /// Point that advances along its path step by step.
 class Way {
  public:
-  Way(const model::PointScene& scene, const model::PointPath& path, long begin)
+  Way(const laboratory::PointScene& scene, const laboratory::PointPath& path, long begin)
       : driver_(path, scene.materials.at(path.material)),
         step_(scene.time.end / scene.time.steps.value_or(1)),
         done_(begin) {}
@@ -47,12 +47,12 @@ class Way {
   }
 
  private:
-  model::PointDriver<3> driver_;
+  laboratory::PointDriver<3> driver_;
   Real step_;
   long done_;
 };
 
-json measure(const model::PointScene& scene) {
+json measure(const laboratory::PointScene& scene) {
   const auto& path = *scene.paths().at(0).second;
   Cost of_first, of_second, of_late;
   Way late(scene, path, 0);
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
   Tpetra::ScopeGuard guard(&argc, &argv);
   try {
     SPREKK_CHECK(argc > 1, "usage: laws SCENE [PATH=VALUE...]");
-    const auto scene = model::read_point_scene(*Tpetra::getDefaultComm(), argv[1], {argv + 2, argv + argc});
+    const auto scene = laboratory::read_point_scene(*Tpetra::getDefaultComm(), argv[1], {argv + 2, argv + argc});
     std::cout << measure(scene).dump(2) << '\n';
   } catch (const Error& error) {
     std::cerr << "laws: " << error.what() << '\n';

@@ -3,7 +3,7 @@
 #include <Teuchos_DefaultSerialComm.hpp>
 
 #include "fuzz.hpp"
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 #include "model/scene.hpp"
 
 int main(int argc, char** argv) {
@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
       fuzz::run(argc, argv, "fuzz_scene", ".xml", [&](const std::string& text, const std::string& damaged) {
         std::ofstream(path, std::ios::binary) << damaged;
         if (text.find("name=\"Point\"") != text.npos)
-          model::read_point_scene(comm, path);
+          laboratory::read_point_scene(comm, path);
         else
           model::read_scene(comm, path);
         return "";

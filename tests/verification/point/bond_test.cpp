@@ -34,9 +34,9 @@ TEST(Bond, TheCurveHasItsPeak) {
 
 /// A traction above the strength ends the curve. Earlier states are kept, and the message contains the strength.
 TEST(Bond, KeepsTheStatesBeforeItBreaks) {
-  const auto curves = model::drive_points(
-      model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/bond.xml",
-                              {"Point.control={traction, jump}", "Point.path={3e6*t, 0}", "Time.steps=11"}));
+  const auto curves = laboratory::drive_points(
+      laboratory::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/bond.xml",
+                                   {"Point.control={traction, jump}", "Point.path={3e6*t, 0}", "Time.steps=11"}));
   ASSERT_EQ(curves.size(), 1u);
   ASSERT_EQ(curves[0].states.size(), 3u);
   EXPECT_NEAR(curves[0].states.back().traction[0], 9e6, 1e-3);
@@ -50,7 +50,7 @@ TEST(Bond, KeepsTheStatesBeforeItBreaks) {
 TEST(Bond, GoesOnPastItsLoss) {
   for (const std::string control : {"{traction, jump}", "{traction, jump, jump}"}) {
     const bool flat = control == "{traction, jump}";
-    const auto curves = model::drive_points(
+    const auto curves = laboratory::drive_points(
         read("bond.xml", {"Point.control=" + control, "Time.end=8", "Time.steps=16",
                           std::string("Point.path={12e6*sin(pi*t/4), 2e-6*t") + (flat ? "}" : ", 0}")}));
     ASSERT_EQ(curves[0].failure, "");
@@ -166,8 +166,8 @@ TEST(Bond, LosesConstantCohesionByOpening) {
 TEST(Bond, EnergiesAreRequiredWithStrengths) {
   for (const char* entry : {"fracture energy", "shear fracture energy"}) {
     try {
-      auto scene = model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/bond.xml",
-                                           {fmt::format("Materials.cemented joint.{}=0", entry)});
+      auto scene = laboratory::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/bond.xml",
+                                                {fmt::format("Materials.cemented joint.{}=0", entry)});
       ADD_FAILURE() << entry;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(entry), std::string::npos) << error.what();

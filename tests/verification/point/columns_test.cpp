@@ -14,11 +14,11 @@ constexpr Real degree = M_PI / 180;
 /// Row of the CSV file.
 using Row = std::map<std::string, Real>;
 
-std::vector<Row> rows_of(const model::PointCurve& curve, std::vector<std::string>& titles) {
+std::vector<Row> rows_of(const laboratory::PointCurve& curve, std::vector<std::string>& titles) {
   std::stringstream csv;
   auto unnamed = curve;
   unnamed.specimen.clear();
-  model::write_csv(csv, {unnamed});
+  laboratory::write_csv(csv, {unnamed});
   std::string line, word;
   std::getline(csv, line);
   titles.clear();
@@ -47,7 +47,7 @@ Real mobilised(Real x) {
 /// Formulas for a joint on a path; values in SI units, numbers of a row by column titles.
 class Formulas {
  public:
-  Formulas(const model::PointScene& scene, const model::PointPath& path)
+  Formulas(const laboratory::PointScene& scene, const laboratory::PointPath& path)
       : path_(path), material_(scene.materials.at(path.material)), dim_(path.control.size()) {
     for (std::size_t i = 1; i < dim_; ++i) slipped_.push_back(path.plastic_jump.empty() ? 0 : path.plastic_jump[i - 1]);
     JRC_ = value("joint roughness coefficient", 0);
@@ -212,7 +212,7 @@ class Formulas {
     return std::tan(degree * (phi * std::min(x / 0.3, Real(1)) + rough * mobilised(x)));
   }
 
-  const model::PointPath& path_;
+  const laboratory::PointPath& path_;
   const model::Material& material_;
   std::size_t dim_;
   Row row_, first_;
@@ -224,8 +224,8 @@ class Formulas {
 using Counts = std::map<std::string, int>;
 
 /// Compares all columns. Values at the points of Barton's table are rounded within 1e-3 of the roughness.
-void expect_columns(const model::PointScene& scene, Counts& counts) {
-  const auto curves = model::drive_points(scene);
+void expect_columns(const laboratory::PointScene& scene, Counts& counts) {
+  const auto curves = laboratory::drive_points(scene);
   const auto paths = scene.paths();
   for (std::size_t c = 0; c < curves.size(); ++c) {
     SCOPED_TRACE(paths[c].first);
@@ -273,7 +273,7 @@ TEST(Columns, TimesAreThoseOfTheScene) {
   for (const auto& file : std::filesystem::directory_iterator(source_dir() + "/xml/point")) {
     SCOPED_TRACE(file.path().string());
     const auto scene = read(file.path().filename());
-    for (const auto& curve : model::drive_points(scene)) {
+    for (const auto& curve : laboratory::drive_points(scene)) {
       EXPECT_EQ(curve.initial.t, scene.time.start);
       const auto times = scene.time.times();
       std::size_t k = 0, others = 0, jumps = 0;

@@ -106,7 +106,7 @@ Overrides random_case(std::mt19937& random) {
 }
 
 /// Checks the inequalities of the joint law ("elastic and plastic jump" of the theory) at every state of a path.
-void expect_lawful(const model::PointScene& scene, const std::vector<PointState>& states) {
+void expect_lawful(const laboratory::PointScene& scene, const std::vector<PointState>& states) {
   const auto value = [&](const char* entry) { return (*scene.materials.at("joint").entry(entry))({}, 0); };
   const Real K = value("tangential stiffness"), mu = value("friction coefficient"), closure = value("maximum closure"),
              K_n = value("normal stiffness"), dilation = std::tan(value("dilation angle") * M_PI / 180),
@@ -138,9 +138,9 @@ TEST(Control, RandomJointsOnRandomPathsObeyTheLaw) {
   for (int i = 0; i < 300; ++i) {
     const auto overrides = random_case(random);
     SCOPED_TRACE(fmt::format("case {}: {}", i, fmt::join(overrides, "; ")));
-    const auto scene = model::read_point_scene(*Tpetra::getDefaultComm(), path, overrides);
+    const auto scene = laboratory::read_point_scene(*Tpetra::getDefaultComm(), path, overrides);
     try {
-      expect_lawful(scene, model::drive_point(scene));
+      expect_lawful(scene, laboratory::drive_point(scene));
     } catch (const Error& error) {
       ADD_FAILURE() << error.what();
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/check.hpp"
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 #include "source_dir.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -16,15 +16,15 @@
 
 namespace sprekk::tests {
 
-using model::PointState;
+using laboratory::PointState;
 
-inline model::PointScene read(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name, overrides);
+inline laboratory::PointScene read(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return laboratory::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/" + name, overrides);
 }
 
 /// Returns the states of xml/point/NAME.
 inline std::vector<PointState> drive(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return model::drive_point(read(name, overrides));
+  return laboratory::drive_point(read(name, overrides));
 }
 
 }  // namespace sprekk::tests

@@ -49,8 +49,8 @@ std::vector<Joint> joints() {
 }
 
 /// Returns a point scene with this joint, stiffness, control and path.
-model::PointScene cycle(const Joint& joint, const std::string& stiffness, int steps, const std::string& control,
-                        const std::string& path) {
+laboratory::PointScene cycle(const Joint& joint, const std::string& stiffness, int steps, const std::string& control,
+                             const std::string& path) {
   Overrides overrides = {"Materials.joint.tangential stiffness=" + stiffness, "Point.control=" + control,
                          "Point.path=" + path, "Time.end=4", fmt::format("Time.steps={}", steps)};
   overrides.insert(overrides.end(), joint.entries.begin(), joint.entries.end());
@@ -59,7 +59,8 @@ model::PointScene cycle(const Joint& joint, const std::string& stiffness, int st
       <Parameter name="type" type="string" value="joint"/></ParameterList></ParameterList>
       <ParameterList name="Time"/><ParameterList name="Point"><Parameter name="material" type="string" value="joint"/>
       </ParameterList></ParameterList>)";
-  return model::point_scene_of(base::parse_xml(text, joint.name, "Sprekk", base::Defects::keep), joint.name, overrides);
+  return laboratory::point_scene_of(base::parse_xml(text, joint.name, "Sprekk", base::Defects::keep), joint.name,
+                                    overrides);
 }
 
 constexpr const char *in_2d = "{traction, jump}", *there_and_back = "{-1e6, 2e-3*(2 - abs(2 - t))}",
@@ -70,17 +71,17 @@ constexpr const char *in_2d = "{traction, jump}", *there_and_back = "{-1e6, 2e-3
 /// (forward minus backward). A stiffness K shortens the path by 2 tau/K at the reversal.
 TEST(Reversal, EndsAlikeWithAnyStiffnessAndSteps) {
   for (const auto& joint : joints()) {
-    const auto exact = model::drive_point(cycle(joint, "infinite", 3200, in_2d, there_and_back)).back();
+    const auto exact = laboratory::drive_point(cycle(joint, "infinite", 3200, in_2d, there_and_back)).back();
     for (const std::string stiffness : {"infinite", "1e10", "1e11", "1e12", "1e13", "1e14", "1e15", "1e16"})
       for (const int steps : {8, 9, 40, 77, 200, 800}) {
         SCOPED_TRACE(fmt::format("{}, K_t {}, {} steps", joint.name, stiffness, steps));
         try {
-          const auto flat = model::drive_point(cycle(joint, stiffness, steps, in_2d, there_and_back)).back();
+          const auto flat = laboratory::drive_point(cycle(joint, stiffness, steps, in_2d, there_and_back)).back();
           const Real compliance = stiffness == "infinite" ? 0 : 1 / std::stod(stiffness);
           const Real late = 4e-3 / steps + 2e6 * compliance;  // uncertainty of the slip, m
           EXPECT_NEAR(flat.traction[1], exact.traction[1], 2e6 * late / 2e-3);
           EXPECT_NEAR(flat.jump[0], exact.jump[0], 0.12 * late);
-          const auto turned = model::drive_point(cycle(joint, stiffness, steps, in_3d, there_and_back_3d)).back();
+          const auto turned = laboratory::drive_point(cycle(joint, stiffness, steps, in_3d, there_and_back_3d)).back();
           EXPECT_NEAR(turned.traction[1], 0.8 * flat.traction[1], 1e-6 * 1e6);
           EXPECT_NEAR(turned.traction[2], 0.6 * flat.traction[1], 1e-6 * 1e6);
           EXPECT_NEAR(turned.jump[0], flat.jump[0], 1e-6 * 1e-3);
@@ -108,7 +109,7 @@ TEST(Reversal, RandomCyclesHaveAStateAtEachStep) {
         fmt::format("{{{:.6g}*(1 + {:.3g}*sin(3*t)), {}{}}}", -N, uniform(0, 0.8), along, dim == 3 ? across : "");
     SCOPED_TRACE(fmt::format("case {}: {}, K_t {}, {} steps, {}", k, joint.name, stiffness, steps, path));
     try {
-      for (const auto& s : model::drive_point(cycle(joint, stiffness, steps, dim == 2 ? in_2d : in_3d, path)))
+      for (const auto& s : laboratory::drive_point(cycle(joint, stiffness, steps, dim == 2 ? in_2d : in_3d, path)))
         EXPECT_LE(std::hypot(s.traction[1], dim == 3 ? s.traction[2] : 0), s.strength * (1 + 1e-9) + 1e-9 * N);
     } catch (const Error& error) {
       ADD_FAILURE() << error.what();

@@ -29,7 +29,7 @@ TEST(RoughJoint, SlidesAtItsStrength) {
 TEST(RoughJoint, SlabsSlideAtTheirAngle) {
   const std::map<std::string, Real> angles = {
       {"rough", 60.080516063}, {"smooth", 44.907117311}, {"very rough", 70}, {"very rough, no cap", 90}};
-  for (const auto& curve : model::drive_points(read("tilt.xml"))) {
+  for (const auto& curve : laboratory::drive_points(read("tilt.xml"))) {
     SCOPED_TRACE(curve.specimen + ": " + curve.failure);
     const Real angle = angles.at(curve.specimen);
     EXPECT_NEAR(static_cast<Real>(curve.states.size()), std::min(angle, Real(89)), 1);  // one per degree

@@ -6,19 +6,20 @@
 namespace sprekk::tests {
 namespace {
 
-model::PointScene shear_tests(const std::vector<std::string>& overrides = {}) {
-  return model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/shear_tests.xml", overrides);
+laboratory::PointScene shear_tests(const std::vector<std::string>& overrides = {}) {
+  return laboratory::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/shear_tests.xml",
+                                      overrides);
 }
 
 TEST(Specimens, AreWhatTheyAreAlone) {
   const auto scene = shear_tests();
-  const auto curves = model::drive_points(scene);
+  const auto curves = laboratory::drive_points(scene);
   ASSERT_EQ(curves.size(), 5u);
   for (const auto& curve : curves) {
     auto alone = scene;
     alone.point = scene.specimens.at(curve.specimen);
     alone.specimens.clear();
-    const auto states = model::drive_point(alone);
+    const auto states = laboratory::drive_point(alone);
     ASSERT_EQ(states.size(), curve.states.size());
     for (std::size_t k = 0; k < states.size(); ++k) {
       EXPECT_EQ(states[k].jump, curve.states[k].jump);
@@ -29,7 +30,7 @@ TEST(Specimens, AreWhatTheyAreAlone) {
 
 /// Curves begin at the initial traction with its jump: 1 MPa over 50 GPa/m.
 TEST(Specimens, BeginWithTheInitialState) {
-  const auto curve = model::drive_points(shear_tests())[1];
+  const auto curve = laboratory::drive_points(shear_tests())[1];
   EXPECT_EQ(curve.specimen, "1 MPa");
   EXPECT_EQ(curve.initial.t, 0);
   EXPECT_EQ(curve.initial.traction[0], -1e6);
@@ -40,7 +41,7 @@ TEST(Specimens, BeginWithTheInitialState) {
 
 /// The strength is the friction bound, i.e. the shear traction of a slipping joint. The maximum is the peak strength.
 TEST(Specimens, StrengthIsTheShearTractionOfSlip) {
-  const auto curve = model::drive_points(shear_tests({"Time.steps=1600"}))[1];
+  const auto curve = laboratory::drive_points(shear_tests({"Time.steps=1600"}))[1];
   Real largest = 0;
   for (const auto& s : curve.states) {
     if (s.contact == laws::ContactState::slip) EXPECT_NEAR(s.strength, s.traction[1], 1e-9 * 1e6) << s.t;
@@ -52,7 +53,7 @@ TEST(Specimens, StrengthIsTheShearTractionOfSlip) {
 /// A specimen that fails in a step keeps its earlier states. The other specimens are complete, and the file has the
 /// rows of all.
 TEST(Specimens, OneFailsAlone) {
-  const auto curves = model::drive_points(
+  const auto curves = laboratory::drive_points(
       shear_tests({"Specimens.1 MPa.control={traction, traction}", "Specimens.1 MPa.path={-1e6, 2e4*t}"}));
   std::size_t rows = 1;
   for (const auto& curve : curves) {
@@ -64,7 +65,7 @@ TEST(Specimens, OneFailsAlone) {
   EXPECT_NE(curves[1].failure.find("shear_tests.xml: Sprekk > Specimens > 1 MPa: step "), std::string::npos)
       << curves[1].failure;
   std::stringstream csv;
-  model::write_csv(csv, curves);
+  laboratory::write_csv(csv, curves);
   std::string line;
   std::getline(csv, line);
   EXPECT_EQ(line.substr(0, 16), "specimen,t,state");

@@ -11,7 +11,7 @@ TEST(Strength, IsTheShearTractionOfAJointThatSlips) {
   int n_slips = 0, n_in_3d = 0;
   for (const auto& file : std::filesystem::directory_iterator(source_dir() + "/xml/point")) {
     SCOPED_TRACE(file.path().string());
-    for (const auto& curve : model::drive_points(read(file.path().filename())))
+    for (const auto& curve : laboratory::drive_points(read(file.path().filename())))
       for (const auto& s : curve.states) {
         if (s.contact != laws::ContactState::slip) continue;
         const Real shear = std::hypot(s.traction[1], s.traction.size() > 2 ? s.traction[2] : 0);

@@ -1,6 +1,6 @@
 // Every joint law on a mesh. Under uniform stress, each face behaves like a point in a column of the same stiffness,
 // under cyclic loads, in 3D in a general direction of the joint frame.
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 #include "verification/uniform/states.hpp"
 
 namespace sprekk::tests {
@@ -76,11 +76,11 @@ void set(physics::JointMaterial& joint, const Law& law) {
   if (joint.friction != "Coulomb" && joint.friction != "slip weakening") joint.friction_coefficient.reset();
 }
 
-std::vector<model::PointState> at_a_point(const Law& law) {
-  auto scene = model::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/cyclic_shear.xml",
-                                       along_path("shear"));
+std::vector<laboratory::PointState> at_a_point(const Law& law) {
+  auto scene = laboratory::read_point_scene(*Tpetra::getDefaultComm(), source_dir() + "/xml/point/cyclic_shear.xml",
+                                            along_path("shear"));
   set(scene.materials.at("joint"), law);
-  return model::drive_point(scene);
+  return laboratory::drive_point(scene);
 }
 
 void expect_the_same(const Law& law, int dim) {

@@ -1,11 +1,20 @@
 // Paths of single points of a joint: reading, states known by hand, and the table of states.
-#include "model/point.hpp"
-#include "block.hpp"
+#include "laboratory/point.hpp"
 
+#include "base/xml.hpp"
+#include "unit/base/message.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <sstream>
 
-namespace sprekk::model::test {
+namespace sprekk::laboratory {
 namespace {
+
+using base::message_of;
+using Entries = std::vector<std::string>;  ///< "Path.To.Entry=value"
 
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
@@ -112,16 +121,17 @@ TEST(Point, MessagesNameThePlaceTheValueAndAllowedValues) {
        "Sprekk > Specimens: given in addition to \"Point\""}};
   for (const auto& [changes, part] : cases) {
     const auto message = message_of([&, &changes = changes] { point(changes); });
-    EXPECT_EQ(n_lines(message), 1) << message;
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
     EXPECT_THAT(message, HasSubstr(part));
   }
   auto entries = point_entries({});
   entries.remove("Point");
   EXPECT_THAT(message_of([&] { point_scene_of(entries, "point.xml"); }),
               HasSubstr("point.xml: Sprekk > Point: missing, and so are \"Specimens\""));
-  EXPECT_THAT(message_of([] { point_scene_of(block_entries(), "block.xml"); }),
+  base::apply_override(entries, "Bulk.material=rock");
+  EXPECT_THAT(message_of([&] { point_scene_of(entries, "block.xml"); }),
               HasSubstr("block.xml: is a scene for `sprekk run`"));
 }
 
 }  // namespace
-}  // namespace sprekk::model::test
+}  // namespace sprekk::laboratory

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "laws/contact.hpp"
-#include "model/scene.hpp"
+#include "physics/scene.hpp"
+#include "solve/time.hpp"
 
 #include <iosfwd>
 
-namespace sprekk::model {
+namespace sprekk::laboratory {
 
 /// Loading of the point. Each component is controlled by the jump w, the traction lambda, or a column of rock of
 /// stiffness k. The end of the column is displaced by d: lambda = k (d - w). With an initial traction lambda_0, jumps
@@ -24,10 +25,10 @@ struct PointPath {
 
 /// One point, or several specimens with common time steps.
 struct PointScene {
-  std::map<std::string, Material> materials;
+  std::map<std::string, physics::Material> materials;
   base::Tables tables;
   base::Expression::Named expressions;  ///< named expressions, for use in others
-  Time time;
+  solve::Time time;
   PointPath point;
   std::map<std::string, PointPath> specimens;  ///< by name; empty: `point`
   std::string file;                            ///< file name for messages
@@ -78,4 +79,4 @@ std::vector<PointState> drive_point(const PointScene& scene);
 /// then jump, elastic jump, plastic jump and traction by component, and strength.
 void write_csv(std::ostream& out, const std::vector<PointCurve>& curves);
 
-}  // namespace sprekk::model
+}  // namespace sprekk::laboratory

@@ -3,7 +3,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 #include "physics/mechanics/joint_material.hpp"
 #include "physics/mechanics/joint_slopes.hpp"
@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-namespace sprekk::model {
+namespace sprekk::laboratory {
 
 inline constexpr const char* axes[] = {"n", "t1", "t2"};
 
@@ -27,7 +27,8 @@ inline const char* axis(std::size_t dim, std::size_t i) { return dim == 2 && i =
 template <int dim>
 class PointDriver {
  public:
-  PointDriver(const PointPath& point, const Material& material) : point_(point), law_(material.joint({0, 0, 0}).law) {
+  PointDriver(const PointPath& point, const physics::Material& material)
+      : point_(point), law_(material.joint({0, 0, 0}).law) {
     for (std::size_t i = 0; i < point_.plastic_jump.size(); ++i) p_old_[i] = point_.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness_[i] = i == 0 ? point_.normal_stiffness : point_.tangential_stiffness;
     law_.sliding_compliance = 0;  // only used to steer the iteration on meshes
@@ -497,4 +498,4 @@ class PointDriver {
   Real base_[dim] = {}, rest_[dim] = {};  // initial traction and its jump
 };
 
-}  // namespace sprekk::model
+}  // namespace sprekk::laboratory

@@ -1,20 +1,20 @@
-#include "model/point.hpp"
+#include "laboratory/point.hpp"
 
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
-#include "model/point_driver.hpp"
+#include "laboratory/point_driver.hpp"
 #include "physics/material_library.hpp"
 
 #include <algorithm>
 #include <ostream>
 
-namespace sprekk::model {
+namespace sprekk::laboratory {
 
 namespace {
 
 template <int dim>
-PointCurve drive(const PointPath& path, const Material& material, const Time& time) {
+PointCurve drive(const PointPath& path, const physics::Material& material, const solve::Time& time) {
   PointCurve curve;
   const auto times = time.times();
   std::string step;
@@ -182,4 +182,4 @@ void write_csv(std::ostream& out, const std::vector<PointCurve>& curves) {
   }
 }
 
-}  // namespace sprekk::model
+}  // namespace sprekk::laboratory
