@@ -18,22 +18,26 @@ std::vector<estimate::QuantityKind> kinds() {
   return all;
 }
 
-}  // namespace
-
-bool Quantity::is_of_outputs() const {
-  const auto known = {"slip", "opening", "normal force", "shear force", "reaction"};
-  return std::any_of(known.begin(), known.end(), [&](const char* name) { return what == name; });
+/// Kind of the given name; all members are empty if there is none.
+estimate::QuantityKind kind_of(const std::string& name) {
+  for (const auto& kind : kinds())
+    if (kind.name == name) return kind;
+  return {};
 }
 
+}  // namespace
+
+bool Quantity::is_norm() const { return kind_of(what).is_norm; }
+
 std::string Quantity::unit(int dim) const {
-  for (const auto& kind : kinds())
-    if (kind.name == what) return dim == 2 ? kind.unit_in_2d : kind.unit;
-  return "";
+  const auto kind = kind_of(what);
+  return dim == 2 ? kind.unit_in_2d : kind.unit;
 }
 
 std::string Quantity::title() const {
-  if (what == "stress" || what == "flux") return what;
-  if (what == "reaction") return fmt::format("reaction {} of \"{}\"", component, boundary);
+  const auto kind = kind_of(what);
+  if (kind.is_norm) return what;
+  if (kind.has_component) return fmt::format("{} {} of \"{}\"", what, component, boundary);
   if (!well.empty()) return fmt::format("{} of \"{}\"", what, well);
   if (!boundary.empty()) return fmt::format("{} through \"{}\"", what, boundary);
   return what + " of " + (fractures.empty() ? "all fractures" : base::quoted_list(fractures));
@@ -54,10 +58,10 @@ void Quantity::describe(base::Section& s) {
   s.required_choice(what, "quantity", names, fmt::format("quantity of interest; {}", fmt::join(texts, "; ")));
   s.entry(fractures, "fractures", "-", "names of the fractures of the quantity; empty: all fractures");
   s.entry(boundary, "boundary", "-",
-          "boundary of a reaction, with prescribed displacements, or of a flow, with a prescribed potential");
+          "boundary of the quantity; its field must be prescribed there");
   s.entry(well, "well", "-",
-          "well of a pressure, with a given rate; of a flow, with a given pressure; of a carried quantity, any well");
-  s.choice(component, "component", {"x", "y", "z"}, "direction of the reaction force");
+          "well of the quantity");
+  s.choice(component, "component", {"x", "y", "z"}, "direction of a force");
   s.entry(relative, "relative", "-", base::between(1e-8, 1),
           "tolerance of the error relative to the value at the end of the run");
   const auto own = unit(3);

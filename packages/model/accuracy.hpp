@@ -17,14 +17,11 @@ namespace sprekk::model {
 
 /// Quantity of interest in the last state.
 struct Quantity : estimate::Functional {   ///< `what`: one of the quantities() of a physics
-  std::string component = "x";             ///< component of a reaction
   std::optional<Real> relative, absolute;  ///< tolerances; the larger one applies
 
   std::string unit(int dim) const;
-  /// Returns true if the value is taken from outputs or reactions, without an estimate.
-  bool is_of_outputs() const;
-  /// Returns true for square roots of energies, which cover the whole domain.
-  bool of_all() const { return what == "stress" || what == "flux"; }
+  /// Returns true for energy norms, which cover the whole domain.
+  bool is_norm() const;
   /// Text `slip of "fault 3"`.
   std::string title() const;
   /// Tolerance at a value, in the unit of the quantity. It is 0 if the value is 0 and there is no absolute tolerance.
@@ -39,6 +36,8 @@ struct Accuracy {
   std::optional<Real> memory;                  ///< memory limit over all ranks, bytes
 
   void describe(base::Section& section);
+  /// Quantities without their tolerances, by name.
+  std::map<std::string, estimate::Functional> functionals() const { return {quantities.begin(), quantities.end()}; }
 };
 
 }  // namespace sprekk::model

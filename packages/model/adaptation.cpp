@@ -1,6 +1,7 @@
 #include "model/adaptation.hpp"
 
 #include "base/over_ranks.hpp"
+#include "model/error_estimates.hpp"
 #include "model/steps.hpp"
 
 #include <algorithm>
@@ -59,13 +60,14 @@ std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> co
   Steps steps(model);
   while (steps.any())
     if (!steps.take().report.converged) return {};
-  ErrorEstimator estimator(model);
-  Goals goals(model);
-  const auto outputs = model.system().outputs(model.state());
+  auto estimator = make_error_estimator(model);
   const auto& quantities = scene.accuracy->quantities;
-  const bool any_of_all =
-      std::any_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.of_all(); });
-  goals.add(outputs, any_of_all ? estimator(outputs) : ErrorEstimate(), estimator, true);
+  estimate::Goals goals(estimator, scene.accuracy->functionals());
+  const auto outputs = model.system().outputs(model.state());
+  const auto state = present_state(model, outputs);
+  const bool any_norm =
+      std::any_of(quantities.begin(), quantities.end(), [](const auto& q) { return q.second.is_norm(); });
+  goals.add(state, any_norm ? estimator(state) : estimate::ErrorEstimate(), true);
   std::map<std::string, Real> values;
   for (const auto& [name, estimate] : goals.estimates()) values[name] = estimate.value;
   return values;
@@ -138,14 +140,14 @@ std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const 
   return "";
 }
 
-void Adaptation::judge(const Model& model, const Goals& goals) {
+void Adaptation::judge(const Model& model, const estimate::Goals& goals) {
   const auto& accuracy = *model.scene().accuracy;
   const auto& mesh = model.mesh();
   const Real here = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
   runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, here), goals.estimates()});
   verdicts_.clear();
   dim_ = mesh.dim();
-  order_ = goals.any_flux() ? 1 : mesh::order(mesh.shape);
+  order_ = goals.any_balance() ? 1 : mesh::order(mesh.shape);
   for (const auto& [name, quantity] : accuracy.quantities) {
     const auto& now = runs_.back().estimates.at(name);
     const Real space = space_error(name), asked = quantity.asked(now.value);
@@ -164,7 +166,7 @@ void Adaptation::judge(const Model& model, const Goals& goals) {
   if (cells_.empty()) why_ = "no cell has an estimated error";
 }
 
-std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const Goals& goals) const {
+std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const estimate::Goals& goals) const {
   std::map<std::string, Real> weights;
   for (const auto& verdict : verdicts_) {
     const Real left = verdict.asked - verdict.time;
@@ -173,7 +175,7 @@ std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const Go
   }
   const auto& mesh = model.mesh();
   std::vector<GlobalIndex> cells;
-  for (const LocalIndex cell : marked(*mesh.comm, goals.indicators(weights), marked_share))
+  for (const LocalIndex cell : estimate::mark_cells(*mesh.comm, goals.indicators(weights), marked_share))
     cells.push_back(mesh.origin.is_null() ? mesh.cell_id[cell] : mesh.origin->cells[cell]);
   return base::gather_over_ranks(*mesh.comm, cells);
 }

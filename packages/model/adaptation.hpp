@@ -2,7 +2,10 @@
 // result.
 #pragma once
 
-#include "model/goals.hpp"
+#include "estimate/goals.hpp"
+#include "model/model.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <chrono>
 
@@ -32,7 +35,7 @@ class Adaptation {
   /// Evaluates a completed run. The spatial error of a quantity is the maximum of its estimate and of bounds from the
   /// previous mesh. One bound is proportional to the change of the value. Tolerances can be met from the second mesh
   /// on.
-  void judge(const Model& model, const Goals& goals);
+  void judge(const Model& model, const estimate::Goals& goals);
   /// Returns true if another run is needed; otherwise why() contains the reason.
   bool goes_on() const { return why_.empty(); }
   const std::string& why() const { return why_; }
@@ -50,12 +53,12 @@ class Adaptation {
   struct Run {
     GlobalIndex cells;
     Real seconds;  ///< since the first run began
-    std::map<std::string, Goals::Estimate> estimates;
+    std::map<std::string, estimate::Estimate> estimates;
   };
 
   void choose_steps(Scene scene, RCP<const Comm> comm);
   Real space_error(const std::string& name) const;
-  std::vector<GlobalIndex> cells_to_halve(const Model& model, const Goals& goals) const;
+  std::vector<GlobalIndex> cells_to_halve(const Model& model, const estimate::Goals& goals) const;
   std::string limit(const Accuracy& accuracy, const Comm& comm) const;
 
   std::shared_ptr<std::optional<mesh::Bisection>> bisection_;

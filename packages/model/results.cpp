@@ -140,9 +140,9 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   }
   if (earlier)
     for (const auto& entry : earlier->journal) ends_.push_back(entry.at("step").at("time"));
-  if (model_.scene().accuracy) goals_.emplace(model_);
-  if (model_.scene().output.error_estimate || goals_) estimator_.emplace(model_);
-  if (goals_) estimator_->want_reactions();
+  const auto& accuracy = model_.scene().accuracy;
+  if (model_.scene().output.error_estimate || accuracy) estimator_.emplace(make_error_estimator(model_));
+  if (accuracy) goals_.emplace(*estimator_, accuracy->functionals());
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
   json_["ranks"] = comm->getSize();
@@ -285,11 +285,13 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   step.update(reactions());
   add_probes(step, outputs);
   if (estimator_ && (model_.scene().output.error_estimate || goals_->need(last))) {
-    const auto estimate = (*estimator_)(outputs);
-    step["error_estimate"] = estimate.summary();
+    const auto scope = model_.timers().scope("error estimate");
+    const auto state = present_state(model_, outputs);
+    const auto estimate = (*estimator_)(state);
+    step["error_estimate"] = summary(*estimator_, estimate);
     if (goals_ && report.converged) {
-      goals_->add(outputs, estimate, *estimator_, last);
-      goals_->weigh(outputs, estimate, *estimator_, last);
+      goals_->add(state, estimate, last);
+      goals_->weigh(state, estimate, last);
     }
     outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());
   }
@@ -335,7 +337,7 @@ void Results::add_error_bounds(const json& fractures, const std::vector<OutputFi
 void Results::begin_stage(const std::string& name, Real time) {
   const auto& mesh = model_.mesh();
   probes_.look_again();
-  if (estimator_) estimator_.emplace(model_);
+  if (estimator_) estimator_.emplace(make_error_estimator(model_));
   json_["stages"].push_back({{"name", name},
                              {"time", time},
                              {"nodes", mesh.n_global_nodes},

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/log.hpp"
+#include "estimate/goals.hpp"
 #include "io/vtu.hpp"
-#include "model/goals.hpp"
-#include "model/error_estimate.hpp"
+#include "model/error_estimates.hpp"
 #include "model/probes.hpp"
 #include "model/steps.hpp"
 
@@ -54,7 +54,7 @@ class Results {
   /// Relative error bounds of quantities in the last state, by their names.
   const std::map<std::string, Real>& error_bounds() const { return error_bounds_; }
   /// Quantities of the section Accuracy in the states so far. The scene must have this section.
-  const Goals& goals() const { return *goals_; }
+  const estimate::Goals& goals() const { return *goals_; }
   /// Sets the entry "accuracy" for finish().
   void add_accuracy(const nlohmann::json& summary) { json_["accuracy"] = summary; }
   /// Finishes the results with the status "completed", "interrupted" or "failed", with the reason of a failure. Throws
@@ -78,8 +78,8 @@ class Results {
 
   Model& model_;
   std::string directory_;
-  std::optional<ErrorEstimator> estimator_;
-  std::optional<Goals> goals_;
+  std::optional<estimate::ErrorEstimator> estimator_;
+  std::optional<estimate::Goals> goals_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   Probes probes_;
   std::optional<io::SeriesFiles> series_;       // files of the probes

@@ -105,7 +105,7 @@ void compare_accuracy(Comparison& comparison, const Scene& scene) {
       comparison.fail(place + " > " + why.substr(0, entry + 1), why.substr(entry + 3));
     else if (is_there && !why.empty())
       comparison.fail(place, why);
-    const bool of_fractures = quantity.boundary.empty() && quantity.well.empty() && !quantity.of_all();
+    const bool of_fractures = quantity.boundary.empty() && quantity.well.empty() && !quantity.is_norm();
     if (const auto& all = comparison.names().fractures; of_fractures && all && all->empty())
       comparison.fail(place, fmt::format("\"quantity\" is \"{}\", and the mesh has no fractures", quantity.what));
   }

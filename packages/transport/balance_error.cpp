@@ -1,6 +1,7 @@
 #include "transport/balance_error.hpp"
 
 #include "base/names.hpp"
+#include "assembly/geometry.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
 #include "transport/well_connections.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -50,12 +52,16 @@ std::optional<std::vector<Real>> transmissivities(const assembly::System& system
   return all;
 }
 
-class BalanceError final : public estimate::MeshError {
+class BalanceError final : public estimate::MeshError, estimate::GoalErrors {
  public:
   BalanceError(assembly::System& system, BalanceErrorParameters parameters)
       : system_(system),
         parameters_(std::move(parameters)),
         blocks_(blocks_of(system, parameters_.field)),
+        names_{.name = parameters_.flux,
+               .unit = parameters_.power,
+               .density = parameters_.flux + " error density",
+               .is_balance = true},
         rates_(parameters_.start) {
     const auto& mesh = system.mesh();
     auto& error = parameters_.error;
@@ -83,11 +89,10 @@ class BalanceError final : public estimate::MeshError {
     find_cells_at_wells();
   }
 
-  const std::string& name() const override { return parameters_.flux; }
-  const std::string& unit() const override { return parameters_.power; }
-  const std::vector<LocalIndex>& cells() const override { return error_->cells(); }
-  std::size_t n_of_energy() const override { return error_->n_of_energy(); }
-  Parts of_state(const fields::BlockVector& x, Real t) override {
+  const Names& names() const override { return names_; }
+  estimate::GoalErrors* goals() override { return this; }
+
+  estimate::StateError of_state(const fields::BlockVector& x, Real t) override {
     const auto& conduits = parameters_.conduits;
     if (const auto T = conduits ? transmissivities(system_, *conduits, x) : std::nullopt) {
       error_->set_transmissivity(*T);
@@ -95,14 +100,29 @@ class BalanceError final : public estimate::MeshError {
     }
     const auto rates = rates_.to(t, system_.rates());
     auto parts = without_wells(error_->of_state(*x[blocks_[0]], *x[blocks_[1]], t, rates));
-    of_state_ = parts.error;
-    return parts;
+    std::array<Real, 2> sums{};
+    for (std::size_t k = 0; k < error_->n_of_energy(); ++k) {
+      sums[0] += parts.error[k] * parts.error[k];
+      sums[1] += parts.whole[k] * parts.whole[k];
+    }
+    sums = base::sum_over_ranks(*system_.mesh().comm, sums);
+    estimate::StateError result{by_cell(parts.error)};
+    result.density = result.energy;
+    for (std::size_t c = 0; c < result.density.size(); ++c)
+      result.density[c] /=
+          assembly::cell_mean(system_.mesh(), static_cast<LocalIndex>(c), [](const auto&) { return 1; })[0];
+    result.error = std::sqrt(sums[0]);
+    result.whole = std::sqrt(sums[1]);
+    result.relative = result.whole > 0 ? result.error / result.whole : 0;
+    of_state_ = std::move(parts.error);
+    return result;
   }
-  Parts of_answer(const fields::BlockVector& x, const fields::BlockVector& dx) override {
-    return without_wells(error_->of_answer(*x[blocks_[0]], *x[blocks_[1]], *dx[blocks_[0]], *dx[blocks_[1]]));
+  estimate::CellErrors of_adjoint(const fields::BlockVector& x, const fields::BlockVector& z) override {
+    const auto [cells, facets] = blocks_;
+    return by_cell(without_wells(error_->of_answer(*x[cells], *x[facets], *z[cells], *z[facets])).error);
   }
 
-  void add_truncation(const fields::BlockVector& x, fields::BlockVector& right_side) override {
+  void add_residual(const fields::BlockVector& x, fields::BlockVector& right_side) override {
     const auto forces = error_->forces(of_state_);
     auto& of_facets = *right_side[blocks_[1]];
     truncation_->add_to_rows(truncation_->flows(forces.on_flows), *right_side[blocks_[0]], of_facets);
@@ -131,8 +151,53 @@ class BalanceError final : public estimate::MeshError {
     return what == parameters_.potential.what || what == parameters_.flow.what;
   }
 
+  estimate::Estimate evaluate(const estimate::Functional& J, const estimate::State& state,
+                              const estimate::Correction* correction) override {
+    auto reactions = system_.reactions(state.x);
+    const Real now = value(J, state.x, reactions);
+    if (!correction) return {now, std::numeric_limits<Real>::infinity()};
+    for (std::size_t k = 0; k < reactions.size(); ++k)
+      for (std::size_t i = 0; i < reactions[k].force.size(); ++i)
+        reactions[k].force[i] += correction->reactions[k].force[i];
+    auto x = fields::create_like(state.x);
+    fields::copy(state.x, x);
+    for (std::size_t b = 0; b < x.size(); ++b) x[b]->update(1, *correction->dx[b], 1);
+    return {now, value(J, x, reactions) - now};
+  }
+
+  bool add_derivative(const estimate::Functional& J, const estimate::State&, fields::BlockVector& right_side) override {
+    const auto at = [&](int k) { return right_side[blocks_[k]]->getLocalViewHost(Tpetra::Access::ReadWrite); };
+    const std::array rows = {at(0), at(1)};
+    if (!J.well.empty()) {
+      add_well(J, rows);
+    } else if (is_flow(J)) {
+      add_boundary(J.boundary, rows[1]);
+    } else {
+      const auto faces = faces_of(J);
+      const Real area = area_of(faces);
+      const auto& mesh = system_.mesh();
+      for (const LocalIndex f : faces) rows[1](mesh.facets->fracture_face[f], 0) += mesh.fracture_faces[f].area / area;
+    }
+    return true;
+  }
+
+ private:
+  bool is_flow(const estimate::Functional& J) const { return J.what == parameters_.flow.what; }
+
+  estimate::CellErrors by_cell(const std::vector<Real>& components) const {
+    const auto& cells = error_->cells();
+    estimate::CellErrors result{std::vector<Real>(system_.mesh().n_owned_cells, 0)};
+    for (std::size_t k = 0; k < components.size(); ++k)
+      if (k < error_->n_of_energy())
+        result.energy[cells[k]] += components[k] * components[k];
+      else
+        result.components.push_back({cells[k], components[k]});
+    return result;
+  }
+
+  /// Value of J at x. `reactions`: those of System::reactions().
   Real value(const estimate::Functional& J, const fields::BlockVector& x,
-             const std::vector<assembly::Reaction>& reactions) override {
+             const std::vector<assembly::Reaction>& reactions) {
     for (const auto& well : parameters_.wells.wells)
       SPREKK_CHECK(
           !in_rock_.count(well.name),
@@ -143,21 +208,6 @@ class BalanceError final : public estimate::MeshError {
       return total({"wells", J.well, (is_flow(J) ? parameters_.flow : parameters_.potential).of_well}, x);
     return is_flow(J) ? through(J.boundary, x, reactions) : mean(J, x);
   }
-
-  void add_derivative(const estimate::Functional& J, const fields::BlockVector&,
-                      fields::BlockVector& right_side) override {
-    const auto at = [&](int k) { return right_side[blocks_[k]]->getLocalViewHost(Tpetra::Access::ReadWrite); };
-    const std::array rows = {at(0), at(1)};
-    if (!J.well.empty()) return add_well(J, rows);
-    if (is_flow(J)) return add_boundary(J.boundary, rows[1]);
-    const auto faces = faces_of(J);
-    const Real area = area_of(faces);
-    const auto& mesh = system_.mesh();
-    for (const LocalIndex f : faces) rows[1](mesh.facets->fracture_face[f], 0) += mesh.fracture_faces[f].area / area;
-  }
-
- private:
-  bool is_flow(const estimate::Functional& J) const { return J.what == parameters_.flow.what; }
 
   /// Signed distance of a well from the centre of its fracture face, along the face, m.
   Real distance_along(const WellConnection& c) const {
@@ -183,9 +233,9 @@ class BalanceError final : public estimate::MeshError {
     for (LocalIndex k = 0; k < mesh.n_owned_cells * n; ++k)
       if (at_wells.count(mesh.node_id[mesh.cells[k]])) is_at_well_[k / n] = 1;
   }
-  Parts without_wells(Parts parts) const {
+  HybridError::Parts without_wells(HybridError::Parts parts) const {
     for (std::size_t k = 0; k < parts.error.size(); ++k)
-      if (is_at_well_[cells()[k]]) parts.error[k] = 0;
+      if (is_at_well_[error_->cells()[k]]) parts.error[k] = 0;
     return parts;
   }
 
@@ -258,6 +308,7 @@ class BalanceError final : public estimate::MeshError {
   assembly::System& system_;
   BalanceErrorParameters parameters_;
   Blocks blocks_, carriers_{};
+  Names names_;
   estimate::StepRates rates_;
   std::vector<Real> of_state_;  // components of the last state of of_state()
   std::vector<WellConnection> connections_;

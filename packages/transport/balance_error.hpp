@@ -2,8 +2,9 @@
 #pragma once
 
 #include "assembly/system.hpp"
-#include "transport/wells.hpp"
+#include "estimate/mesh_error.hpp"
 #include "transport/hybrid_error.hpp"
+#include "transport/wells.hpp"
 
 #include <functional>
 #include <memory>

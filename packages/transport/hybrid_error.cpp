@@ -40,13 +40,13 @@ class Error final : public HybridError {
   const std::vector<LocalIndex>& cells() const override { return cell_of_component_; }
   std::size_t n_of_energy() const override { return n_of_energy_; }
 
-  estimate::MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
+  HybridError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
                                       const assembly::Rates& rates) override {
     auto [result, s] = parts(Potentials(flow_.layouts(), rock().fluid, {&cells, &facets}), t, &sums_);
     if (varies()) base::collectively(*mesh_->comm, [&] { add_rates(s, t, rates, result); });
     return result;
   }
-  estimate::MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
+  HybridError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
                                        const fields::Vector& d_cells, const fields::Vector& d_facets) const override {
     auto [result, s] =
         parts(Potentials(flow_.layouts(), rock().fluid, {&cells, &facets}, {&d_cells, &d_facets}), 0, nullptr);
@@ -433,7 +433,7 @@ class Error final : public HybridError {
   }
 
   /// Returns the components and s at all places. `kept`: receives the sums; may be null. Collective.
-  std::pair<estimate::MeshError::Parts, std::vector<Real>> parts(const Potentials& u, Real t, Sums* kept) const {
+  std::pair<HybridError::Parts, std::vector<Real>> parts(const Potentials& u, Real t, Sums* kept) const {
     Sums sums(places_.size());
     std::vector<typename InCell::Flows> in_cells;
     std::vector<typename InFace::Flows> in_faces;
@@ -491,7 +491,7 @@ class Error final : public HybridError {
     return cells_[c].flux.variation([&](const auto&, const auto& l) { return InCell::quadratic(of_cell, l); });
   }
   /// Appends the variation of the storage rate minus the source.
-  void add_rates(const std::vector<Real>& s, Real t, const assembly::Rates& rates, estimate::MeshError::Parts& parts) {
+  void add_rates(const std::vector<Real>& s, Real t, const assembly::Rates& rates, HybridError::Parts& parts) {
     const auto stored = std::move(before_);
     const auto& older = stored[1].empty() ? stored[0] : stored[1];
     before_[0].clear();
@@ -590,11 +590,11 @@ class Error final : public HybridError {
       if (sums[p][held] == 0 && stiffness_[p][0] > 0) s[p] -= relaxation * slopes[p][0] / stiffness_[p][0];
   }
 
-  estimate::MeshError::Parts errors(const Potentials& u, const Components& fluxes,
+  HybridError::Parts errors(const Potentials& u, const Components& fluxes,
                                     const std::vector<typename InCell::Flows>& in_cells,
                                     const std::vector<typename InFace::Flows>& in_faces, const Sums& sums,
                                     const std::vector<Real>& s) const {
-    estimate::MeshError::Parts result;
+    HybridError::Parts result;
     const auto put = [](std::vector<Real>& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
     const auto add = [&](const auto& entity, const auto& flux, const auto& q) {
       put(result.error, entity.flux.error(flux, entity.flux.gradients(), at(s, entity.place)));
@@ -633,7 +633,7 @@ class Error final : public HybridError {
     return towards > 0 ? distance : -distance;
   }
 
-  void add_side(const Side& side, Real q, const std::vector<Real>& s, estimate::MeshError::Parts& parts) const {
+  void add_side(const Side& side, Real q, const std::vector<Real>& s, HybridError::Parts& parts) const {
     const auto in_cell = at(s, side.of_cell), in_face = at(s, side.of_face);
     for (int p = 0; p < n_face_points; ++p) {
       std::array<Real, dim> l{};

@@ -3,7 +3,6 @@
 
 #include "assembly/rates.hpp"
 #include "transport/hybrid_flux.hpp"
-#include "estimate/mesh_error.hpp"
 
 #include <memory>
 
@@ -35,15 +34,21 @@ struct HybridErrorParameters {
 /// - The source minus the storage rate varies in a cell. Its variation is multiplied by that of the adjoint potential.
 class HybridError {
  public:
+  struct Parts {
+    std::vector<Real> error, whole;  ///< [component] of the error; the same for the total fluxes
+  };
+
   virtual ~HybridError() = default;
+  /// [component] owned cell to which the component belongs. Stored data.
   virtual const std::vector<LocalIndex>& cells() const = 0;
+  /// Number of leading components that contribute to the energy. The others contribute to functionals only.
   virtual std::size_t n_of_energy() const = 0;
   /// Components of a state from potentials on cells and on facets, [owned unknown]. The storage rate refers to the two
   /// previous calls, or to the initial state. Collective.
-  virtual estimate::MeshError::Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
+  virtual Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
                                               const assembly::Rates& rates) = 0;
   /// Components of a small change (d_cells, d_facets) of these potentials. Collective.
-  virtual estimate::MeshError::Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
+  virtual Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
                                                const fields::Vector& d_cells, const fields::Vector& d_facets) const = 0;
 
   /// Linear form of potentials v and their flows q_v, summed over the ends of each entity.

@@ -36,14 +36,14 @@ OLD_TRILINOS = re.compile(r"\bgetNode(?:Num\w+|ElementList)\b|\bKokkos::Experime
 TRILINOS_COMPAT = "packages/base/trilinos_compat.hpp"  # and its test
 
 # Packages independent of the physics, checked by words of the present physics. The second expression lists exceptions:
-# coupling of assembly and contact, point driver and error estimate.
+# coupling of assembly and contact.
 GENERIC = {"base", "mesh", "fields", "assembly", "estimate", "multigrid", "solve", "io", "model"}
 PHYSICS = re.compile(
     r"\b(?:pressures?|fluids?|tractions?|friction|temperatures?|heat|dilation|apertures?|biot|permeability|porosity"
     r"|viscosity)\b", re.IGNORECASE)
 NOT_YET_GENERIC = re.compile(
     r"packages/(?:assembly/(?:free_motion|module|system(?:_\w+)?)\.[ch]pp"
-    r"|model/(?:accuracy|goals|error_estimate)\.[ch]pp|fields/block_problem\.hpp|solve/picard\.[ch]pp|mesh/mesh_info\.cpp)")
+    r"|fields/block_problem\.hpp|solve/picard\.[ch]pp|mesh/mesh_info\.cpp)")
 # Words of heat, allowed only in its package and in the list of physics.
 HEAT = re.compile(r"heat|temperature", re.IGNORECASE)
 HEAT_ROOM = re.compile(r"packages/physics/(?:heat/|list\.hpp)")

@@ -156,9 +156,13 @@ std::string Flow::no_error_estimate(const Scene& scene) {
 }
 
 std::vector<estimate::QuantityKind> Flow::quantities() {
-  return {{"pressure", "Pa", "Pa", "pressure of a well, or mean over fractures"},
-          {"flow", "m^3/s", "m^2/s", "flow of fluid into the domain from a well or through a boundary"},
-          {"flux", "sqrt(W)", "sqrt(W/m)", "square root of the power dissipated by the flow of fluid"}};
+  return {{"pressure", "Pa", "Pa", "pressure of a well with a given rate, or mean over fractures"},
+          {"flow", "m^3/s", "m^2/s", "flow of fluid into the domain from a well with a given pressure, or through a boundary with a prescribed pressure"},
+          {.name = "flux",
+           .unit = "sqrt(W)",
+           .unit_in_2d = "sqrt(W/m)",
+           .text = "square root of the power dissipated by the flow of fluid",
+           .is_norm = true}};
 }
 
 std::string Flow::refuses(const Scene& scene, const estimate::Functional& J) {

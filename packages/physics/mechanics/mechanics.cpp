@@ -4,6 +4,7 @@
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/tips.hpp"
+#include "physics/mechanics/mechanics_error.hpp"
 #include "physics/mechanics/modules.hpp"
 #include "physics/mechanics/release.hpp"
 #include "physics/mechanics/solid_pressure.hpp"
@@ -328,8 +329,20 @@ std::vector<estimate::QuantityKind> Mechanics::quantities() {
           {"opening", "m", "m", "mean normal jump over the area of fractures"},
           {"normal force", "N", "N/m", "integral of compression over fractures"},
           {"shear force", "N", "N/m", "integral of the magnitude of shear traction over fractures"},
-          {"reaction", "N", "N/m", "force on a boundary with prescribed displacements"},
-          {"stress", "sqrt(J)", "sqrt(J/m)", "square root of the integral of s : C^-1 s, twice the elastic energy"}};
+          {.name = "reaction",
+           .unit = "N",
+           .unit_in_2d = "N/m",
+           .text = "force on a boundary with prescribed displacements",
+           .has_component = true},
+          {.name = "stress",
+           .unit = "sqrt(J)",
+           .unit_in_2d = "sqrt(J/m)",
+           .text = "square root of the integral of s : C^-1 s, twice the elastic energy",
+           .is_norm = true}};
+}
+
+std::unique_ptr<estimate::MeshError> Mechanics::mesh_error(const Setting& setting, assembly::System& system) {
+  return is_in(setting.scene) ? make_mechanics_error(setting, system) : nullptr;
 }
 
 std::string Mechanics::refuses(const Scene& scene, const estimate::Functional& J) {

@@ -111,6 +111,7 @@ struct Mechanics : Physics<Mechanics> {
   static std::string no_error_estimate(const Scene& scene);
   static std::vector<estimate::QuantityKind> quantities();
   static std::string refuses(const Scene& scene, const estimate::Functional& J);
+  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static std::vector<std::string> fixed_entries();
   static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);
   static std::vector<std::string> refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);

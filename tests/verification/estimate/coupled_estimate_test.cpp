@@ -1,5 +1,6 @@
 // Error estimates of coupled flow, heat and mechanics, compared with solutions that are exact up to mesh errors.
-#include "model/goals.hpp"
+#include "estimate/goals.hpp"
+#include "model/error_estimates.hpp"
 #include "verification/heat/warm_boxes.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -9,7 +10,7 @@ namespace {
 
 struct Measured {
   Real value, error;
-  std::optional<Real> lack;  // signed
+  std::optional<Real> lack;  // signed, of balances
 };
 
 /// Returns value and estimated error of a quantity after all steps.
@@ -17,17 +18,20 @@ Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const 
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
   model::Model model(scene, comm);
-  model::ErrorEstimator estimator(model);
-  estimator.want_reactions();
-  model::Goals goals(model);
-  model::ErrorEstimate estimate;
+  auto estimator = model::make_error_estimator(model);
+  estimate::Goals goals(estimator, model.scene().accuracy->functionals());
+  std::optional<Real> lack;
   const auto times = model.scene().time.times();
   for (const Real t : times) {
     EXPECT_TRUE(model.step_to(t).converged);
     const auto outputs = Outputs(model).all();
-    estimate = estimator(outputs);
-    goals.add(outputs, estimate, estimator, t == times.back());
-    goals.weigh(outputs, estimate, estimator, t == times.back());
+    const auto state = model::present_state(model, outputs);
+    const auto estimate = estimator(state);
+    goals.add(state, estimate, t == times.back());
+    goals.weigh(state, estimate, t == times.back());
+    for (const auto& error : estimator.errors())
+      if (error->names().is_balance && error->goals()->knows(quantity.what))
+        lack = error->goals()->evaluate(quantity, state, &*estimate.correction).error;
   }
   Real marked = 0;  // sum of all shares, which is one
   for (const Real share : goals.indicators({{"goal", 1}})) marked += share;
@@ -35,8 +39,7 @@ Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const 
   Teuchos::reduceAll(*model.mesh().comm, Teuchos::REDUCE_SUM, 1, &marked, &all);
   EXPECT_NEAR(all, 1, 1e-10);
   const auto& goal = goals.estimates().at("goal");
-  const auto of_functional = estimator.of_functional(quantity, estimate);
-  return {goal.value, goal.error, of_functional ? std::optional(of_functional->lack) : std::nullopt};
+  return {goal.value, goal.error, lack};
 }
 
 /// Compares estimate and error on several meshes; the error must decrease with the given order.

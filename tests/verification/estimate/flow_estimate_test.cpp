@@ -1,6 +1,7 @@
 // Error estimates of flow, compared with exact solutions.
 #include "base/over_ranks.hpp"
-#include "model/goals.hpp"
+#include "estimate/goals.hpp"
+#include "model/error_estimates.hpp"
 #include "transport/face_plane.hpp"
 #include "verification/flow/boxes.hpp"
 
@@ -116,20 +117,21 @@ MeasuredFlux measure(model::Scene scene, const Exact& exact, const model::Quanti
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
   model::Model model(scene, Tpetra::getDefaultComm());
-  model::ErrorEstimator estimator(model);
-  model::Goals goals(model);
-  model::ErrorEstimate estimate;
+  auto estimator = model::make_error_estimator(model);
+  estimate::Goals goals(estimator, model.scene().accuracy->functionals());
+  estimate::ErrorEstimate estimate;
   const auto times = model.scene().time.times();
   for (const Real t : times) {
     EXPECT_TRUE(model.step_to(t).converged);
     const auto outputs = Outputs(model).all();
-    estimate = estimator(outputs);
-    goals.add(outputs, estimate, estimator, t == times.back());
+    const auto state = model::present_state(model, outputs);
+    estimate = estimator(state);
+    goals.add(state, estimate, t == times.back());
   }
   const auto& goal = goals.estimates().at("goal");
   const Real error = mesh::dimension(model.mesh().shape) == 2 ? true_error<mesh::Shape::triangle>(model, exact)
                                                               : true_error<mesh::Shape::tetrahedron>(model, exact);
-  return {error, estimate.fluxes.at(0).error, goal.value, goal.error};
+  return {error, estimate.norms.at(0).error, goal.value, goal.error};
 }
 
 struct Case {

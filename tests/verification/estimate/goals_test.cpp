@@ -1,5 +1,6 @@
 // Quantities of interest, their errors, and the cells to refine.
-#include "model/goals.hpp"
+#include "estimate/goals.hpp"
+#include "model/error_estimates.hpp"
 #include "verification/scenes.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -37,22 +38,20 @@ TEST(Goals, ErrorsOfCracksAndTheirBounds) {
       SCOPED_TRACE(fmt::format("{} of order {}", crack.scene, order));
       model::Model model(scene_of(crack, order), Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged);
-      model::ErrorEstimator estimator(model);
+      auto estimator = model::make_error_estimator(model);
       const auto outputs = Outputs(model).all();
-      const auto estimate = estimator(outputs);
-      model::Goals goals(model);
-      goals.add(outputs, estimate, estimator, true);
-      goals.weigh(outputs, estimate, estimator, true);
+      const auto state = model::present_state(model, outputs);
+      const auto estimate = estimator(state);
+      estimate::Goals goals(estimator, model.scene().accuracy->functionals());
+      goals.add(state, estimate, true);
+      goals.weigh(state, estimate, true);
       const auto& goal = goals.estimates().at("goal");
       const Real ratio = goal.error / std::abs(goal.value - exact);
       EXPECT_GE(ratio, 0.5);
       EXPECT_LE(ratio, 2);
-      const int dim = model.mesh().dim(), along = crack.quantity == "slip" ? 1 : 0;
-      std::vector<Real> d(model.mesh().n_owned_fracture_faces * dim, 0), products;
-      for (std::size_t k = along; k < d.size(); k += dim) d[k] = 1;
-      const auto weight = estimator.answer_energy(d);
-      ASSERT_EQ(weight.size(), estimate.energy.size());
-      for (std::size_t c = 0; c < weight.size(); ++c) products.push_back(std::sqrt(weight[c] * estimate.energy[c]));
+      const auto products = estimator.contributions(model.scene().accuracy->quantities.at("goal"), state,
+                                                    *estimator.errors()[0], {estimate.norms[0]});
+      ASSERT_EQ(products.size(), static_cast<std::size_t>(model.mesh().n_owned_cells));
       const Real bound = sum(*model.mesh().comm, products) / (2 * goal.error);  // the crack has the length 2
       EXPECT_GE(bound, 0.9);
       EXPECT_LE(bound, 4);
@@ -81,10 +80,11 @@ TEST(Goals, ErrorsOfTearing) {
           sets.emplace_back(entry);
       model::Model model(read_scene("verification/tearing_3d.xml", sets), Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged);
-      model::ErrorEstimator estimator(model);
+      auto estimator = model::make_error_estimator(model);
       const auto outputs = Outputs(model).all();
-      model::Goals goals(model);
-      goals.add(outputs, estimator(outputs), estimator, true);
+      const auto state = model::present_state(model, outputs);
+      estimate::Goals goals(estimator, model.scene().accuracy->functionals());
+      goals.add(state, estimator(state), true);
       const auto& goal = goals.estimates().at("goal");
       const Real ratio = goal.error / std::abs(goal.value - 2e-3 * M_PI / 4);
       EXPECT_GE(ratio, 0.5);
@@ -106,11 +106,11 @@ TEST(Goals, ErrorsOfReactions) {
                     "Accuracy.quantities.goal.component=x", "Accuracy.quantities.goal.relative=0.01"}),
         Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(model.scene().time.times().back()).converged);
-    model::ErrorEstimator estimator(model);
-    estimator.want_reactions();
+    auto estimator = model::make_error_estimator(model);
     const auto outputs = Outputs(model).all();
-    model::Goals goals(model);
-    goals.add(outputs, estimator(outputs), estimator, true);
+    const auto state = model::present_state(model, outputs);
+    estimate::Goals goals(estimator, model.scene().accuracy->functionals());
+    goals.add(state, estimator(state), true);
     const auto& goal = goals.estimates().at("goal");
     const Real ratio = goal.error / std::abs(goal.value - 0.4900271545);
     EXPECT_GE(ratio, 0.5);
@@ -127,7 +127,7 @@ TEST(Goals, MarksTheFewestCells) {
   for (int k = comm->getRank(); k < 12; k += comm->getSize()) here.push_back(k == 0 ? 0 : std::exp2(k) * 1e-7);
   const auto marked_values = [&](const std::vector<Real>& values, Real theta) {
     Real n = 0;
-    for (const LocalIndex c : model::marked(*comm, values, theta)) {
+    for (const LocalIndex c : estimate::mark_cells(*comm, values, theta)) {
       EXPECT_GE(values[c], 1e-7 * std::exp2(theta < 0.6 ? 11 : 10));
       n += 1;
     }
