@@ -16,8 +16,8 @@ class Goals {
   /// Returns true if the state must be added: the last one, or every one if a quantity has a history or the system has
   /// storage. Stored data.
   bool need(bool last) const;
-  /// Adds a state. Without norms in the estimate, only quantities other than norms are evaluated. `last`: no other state
-  /// follows.
+  /// Adds a state. Without norms in the estimate, only quantities other than norms are evaluated. `last`: no other
+  /// state follows.
   void add(const State& state, const ErrorEstimate& estimate, bool last);
   /// Adds the contributions of cells to error bounds, for the state added last.
   void weigh(const State& state, const ErrorEstimate& estimate, bool last);

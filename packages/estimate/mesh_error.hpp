@@ -66,8 +66,8 @@ struct OutputError {
   assembly::OutputField field;  ///< exact minus computed values
 };
 
-/// Value of a quantity, and its error due to the mesh, exact minus computed, or a bound of its absolute value; infinite:
-/// unknown.
+/// Value of a quantity, and its error due to the mesh, exact minus computed, or a bound of its absolute value;
+/// infinite: unknown.
 struct Estimate {
   Real value = 0, error = 0;
 };

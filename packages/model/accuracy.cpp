@@ -57,10 +57,8 @@ void Quantity::describe(base::Section& s) {
   }
   s.required_choice(what, "quantity", names, fmt::format("quantity of interest; {}", fmt::join(texts, "; ")));
   s.entry(fractures, "fractures", "-", "names of the fractures of the quantity; empty: all fractures");
-  s.entry(boundary, "boundary", "-",
-          "boundary of the quantity; its field must be prescribed there");
-  s.entry(well, "well", "-",
-          "well of the quantity");
+  s.entry(boundary, "boundary", "-", "boundary of the quantity; its field must be prescribed there");
+  s.entry(well, "well", "-", "well of the quantity");
   s.choice(component, "component", {"x", "y", "z"}, "direction of a force");
   s.entry(relative, "relative", "-", base::between(1e-8, 1),
           "tolerance of the error relative to the value at the end of the run");

@@ -46,10 +46,10 @@ class HybridError {
   /// Components of a state from potentials on cells and on facets, [owned unknown]. The storage rate refers to the two
   /// previous calls, or to the initial state. Collective.
   virtual Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
-                                              const assembly::Rates& rates) = 0;
+                         const assembly::Rates& rates) = 0;
   /// Components of a small change (d_cells, d_facets) of these potentials. Collective.
-  virtual Parts of_answer(const fields::Vector& cells, const fields::Vector& facets,
-                                               const fields::Vector& d_cells, const fields::Vector& d_facets) const = 0;
+  virtual Parts of_answer(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
+                          const fields::Vector& d_facets) const = 0;
 
   /// Linear form of potentials v and their flows q_v, summed over the ends of each entity.
   struct Forces {

@@ -157,7 +157,9 @@ std::string Flow::no_error_estimate(const Scene& scene) {
 
 std::vector<estimate::QuantityKind> Flow::quantities() {
   return {{"pressure", "Pa", "Pa", "pressure of a well with a given rate, or mean over fractures"},
-          {"flow", "m^3/s", "m^2/s", "flow of fluid into the domain from a well with a given pressure, or through a boundary with a prescribed pressure"},
+          {"flow", "m^3/s", "m^2/s",
+           "flow of fluid into the domain from a well with a given pressure, or through a boundary with a prescribed "
+           "pressure"},
           {.name = "flux",
            .unit = "sqrt(W)",
            .unit_in_2d = "sqrt(W/m)",

@@ -51,8 +51,8 @@ class MechanicsError final : public estimate::MeshError, estimate::GoalErrors {
     stress_ = (*recovery_)(displacement(x));
     const auto& scales = system_.scales();
     const Real energy = scales.at("stress") * scales.at("displacement");
-    estimate::StateError result{{std::move(stress_.energy), {}}, std::move(stress_.density), stress_.error,
-                                stress_.stress};
+    estimate::StateError result{
+        {std::move(stress_.energy), {}}, std::move(stress_.density), stress_.error, stress_.stress};
     result.relative = ratio_of(result.error, result.whole, std::sqrt(section_ * energy));
     return result;
   }
@@ -186,7 +186,7 @@ class MechanicsError final : public estimate::MeshError, estimate::GoalErrors {
   int traction_;         // block; -1 if there is none
   ByField<const fields::Layout*> layouts_{};
   std::unique_ptr<StressRecovery> recovery_;  // null without deformation
-  Real section_;  // cross-section of a body with the largest extent of the domain, m^2 (2D: m)
+  Real section_;        // cross-section of a body with the largest extent of the domain, m^2 (2D: m)
   StressError stress_;  // of the last state of of_state()
   FractureGoals of_fractures_;
 };
