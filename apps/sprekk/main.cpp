@@ -3,11 +3,11 @@
 #include "base/heap.hpp"
 #include "base/memory.hpp"
 #include "base/over_ranks.hpp"
-#include "physics/material_library.hpp"
+#include "laboratory/point.hpp"
 #include "model/factor_of_safety.hpp"
 #include "model/network.hpp"
-#include "laboratory/point.hpp"
 #include "model/run.hpp"
+#include "physics/material_library.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "model/model.hpp"
 
-#include "base/names.hpp"
 #include "assembly/geometry.hpp"
+#include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "mesh/distribute.hpp"

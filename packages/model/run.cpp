@@ -1,15 +1,15 @@
 #include "model/run.hpp"
 
-#include "base/over_ranks.hpp"
 #include "base/memory.hpp"
+#include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "io/directory_lock.hpp"
 #include "io/file.hpp"
+#include "laboratory/point.hpp"
 #include "mesh/mesh_info.hpp"
 #include "mesh/msh_reader.hpp"
 #include "model/adaptation.hpp"
 #include "model/checkpointing.hpp"
-#include "laboratory/point.hpp"
 #include "model/steps.hpp"
 
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 #include "physics/comparison.hpp"
 
-#include "base/names.hpp"
 #include "base/check.hpp"
+#include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "physics/material_library.hpp"
 

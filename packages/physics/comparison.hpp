@@ -3,8 +3,8 @@
 
 #include "assembly/constraints.hpp"
 #include "base/text.hpp"
-#include "transport/outflow.hpp"
 #include "physics/scene.hpp"
+#include "transport/outflow.hpp"
 
 #include <algorithm>
 #include <optional>

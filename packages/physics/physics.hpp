@@ -4,9 +4,9 @@
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
 #include "base/parameters.hpp"
+#include "estimate/mesh_error.hpp"
 #include "mesh/mesh.hpp"
 #include "transport/carried.hpp"
-#include "estimate/mesh_error.hpp"
 
 #include <functional>
 #include <memory>

@@ -3,9 +3,9 @@
 
 #include "base/check.hpp"
 #include "base/table.hpp"
+#include "fields/properties.hpp"
 #include "mesh/facets.hpp"
 #include "physics/list.hpp"
-#include "fields/properties.hpp"
 
 #include <algorithm>
 #include <map>

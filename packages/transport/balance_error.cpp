@@ -1,12 +1,12 @@
 #include "transport/balance_error.hpp"
 
-#include "base/names.hpp"
 #include "assembly/geometry.hpp"
 #include "base/check.hpp"
+#include "base/names.hpp"
 #include "base/over_ranks.hpp"
-#include "transport/well_connections.hpp"
-#include "transport/flux_truncation.hpp"
 #include "estimate/step_rates.hpp"
+#include "transport/flux_truncation.hpp"
+#include "transport/well_connections.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include "assembly/module.hpp"
 #include "laws/fluid.hpp"
-#include "transport/present_conduits.hpp"
 #include "transport/fluid_change.hpp"
+#include "transport/present_conduits.hpp"
 
 #include <vector>
 

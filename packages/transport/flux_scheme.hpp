@@ -1,9 +1,9 @@
 // Selection of the flux scheme of a scene.
 #pragma once
 
+#include "fields/properties.hpp"
 #include "laws/darcy.hpp"
 #include "transport/hybrid_cell.hpp"
-#include "fields/properties.hpp"
 
 #include <string>
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "assembly/module.hpp"
+#include "fields/properties.hpp"
 #include "transport/fluid_change.hpp"
 #include "transport/hybrid_cell.hpp"
 #include "transport/outflow.hpp"
-#include "fields/properties.hpp"
 
 #include <array>
 #include <memory>

@@ -3,9 +3,9 @@
 
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
+#include "fields/properties.hpp"
 #include "laws/fluid.hpp"
 #include "transport/fluid_change.hpp"
-#include "fields/properties.hpp"
 
 #include <memory>
 #include <optional>

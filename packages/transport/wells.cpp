@@ -3,8 +3,8 @@
 #include "assembly/load.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
-#include "transport/exchange.hpp"
 #include "transport/brought.hpp"
+#include "transport/exchange.hpp"
 #include "transport/well_connections.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Elasticity and flow in random cells.
-#include "transport/changed_flow.hpp"
 #include "physics/mechanics/elastic_cell.hpp"
 #include "report.hpp"
+#include "transport/changed_flow.hpp"
 
 namespace sprekk::device {
 namespace {

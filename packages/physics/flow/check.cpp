@@ -1,7 +1,7 @@
 // Checks of scenes with flow.
+#include "base/entry_of_place.hpp"
 #include "base/text.hpp"
 #include "physics/comparison.hpp"
-#include "base/entry_of_place.hpp"
 
 #include <algorithm>
 

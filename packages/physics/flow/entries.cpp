@@ -1,6 +1,6 @@
 // Scene entries of flow.
-#include "physics/flow/flow.hpp"
 #include "base/entry_of_place.hpp"
+#include "physics/flow/flow.hpp"
 #include "transport/tensor_entry.hpp"
 
 #include <algorithm>

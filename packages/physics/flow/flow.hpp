@@ -2,10 +2,10 @@
 #pragma once
 
 #include "base/expression.hpp"
-#include "laws/darcy.hpp"
-#include "transport/flux_scheme.hpp"
-#include "physics/physics.hpp"
 #include "fields/properties.hpp"
+#include "laws/darcy.hpp"
+#include "physics/physics.hpp"
+#include "transport/flux_scheme.hpp"
 #include "transport/storage.hpp"
 
 #include <limits>

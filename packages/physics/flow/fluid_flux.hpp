@@ -2,8 +2,8 @@
 #pragma once
 
 #include "laws/conduit.hpp"
-#include "transport/wells.hpp"
 #include "transport/hybrid_flux.hpp"
+#include "transport/wells.hpp"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 // Checks of scenes with heat.
-#include "physics/comparison.hpp"
 #include "base/entry_of_place.hpp"
+#include "physics/comparison.hpp"
 #include "physics/heat/temperatures.hpp"
 
 #include <algorithm>

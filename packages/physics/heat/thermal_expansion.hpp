@@ -3,8 +3,8 @@
 
 #include "assembly/module.hpp"
 #include "base/expression.hpp"
-#include "laws/elasticity.hpp"
 #include "fields/properties.hpp"
+#include "laws/elasticity.hpp"
 
 #include <memory>
 #include <vector>

@@ -1,6 +1,6 @@
 // Change of the mechanical part of a scene in a live model.
-#include "base/names.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"

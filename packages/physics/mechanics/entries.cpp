@@ -1,7 +1,7 @@
 // Scene entries of mechanics.
+#include "base/entry_of_place.hpp"
 #include "laws/elastic_constants.hpp"
 #include "physics/mechanics/mechanics.hpp"
-#include "base/entry_of_place.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "assembly/module.hpp"
+#include "fields/properties.hpp"
 #include "laws/elasticity.hpp"
 #include "physics/mechanics/loads.hpp"
-#include "fields/properties.hpp"
 
 #include <memory>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "physics/mechanics/mechanics.hpp"
 
+#include "base/entry_of_place.hpp"
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
@@ -9,7 +10,6 @@
 #include "physics/mechanics/release.hpp"
 #include "physics/mechanics/solid_pressure.hpp"
 #include "physics/mechanics/uniqueness.hpp"
-#include "base/entry_of_place.hpp"
 #include "physics/scene.hpp"
 
 #include <algorithm>

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "base/expression.hpp"
+#include "fields/properties.hpp"
 #include "laws/elasticity.hpp"
 #include "physics/mechanics/joint_material.hpp"
 #include "physics/mechanics/loads.hpp"
 #include "physics/physics.hpp"
-#include "fields/properties.hpp"
 
 #include <optional>
 #include <string>

@@ -1,9 +1,9 @@
 // Warnings about implausible mechanical input.
 #include "assembly/geometry.hpp"
+#include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "mesh/extents.hpp"
-#include "base/entry_of_place.hpp"
 #include "physics/scene.hpp"
 
 #include <fmt/ranges.h>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "assembly/module.hpp"
-#include "laws/elasticity.hpp"
 #include "fields/properties.hpp"
+#include "laws/elasticity.hpp"
 
 #include <memory>
 

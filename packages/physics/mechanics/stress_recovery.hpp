@@ -2,8 +2,8 @@
 #pragma once
 
 #include "fields/layout.hpp"
-#include "laws/elasticity.hpp"
 #include "fields/properties.hpp"
+#include "laws/elasticity.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>

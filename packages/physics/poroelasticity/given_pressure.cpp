@@ -2,8 +2,8 @@
 
 #include "assembly/assembler.hpp"
 #include "base/check.hpp"
-#include "physics/mechanics/coupling_volumes.hpp"
 #include "fields/properties.hpp"
+#include "physics/mechanics/coupling_volumes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
 #include "physics/mechanics/coupling_volumes.hpp"
-#include "transport/hybrid_diffusion.hpp"
 #include "physics/mechanics/volume_work.hpp"
+#include "transport/hybrid_diffusion.hpp"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "assembly/module.hpp"
-#include "transport/stabilisation.hpp"
 #include "fields/properties.hpp"
+#include "transport/stabilisation.hpp"
 
 #include <memory>
 #include <vector>

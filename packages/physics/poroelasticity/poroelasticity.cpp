@@ -1,8 +1,8 @@
 #include "physics/poroelasticity/poroelasticity.hpp"
 
+#include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
-#include "base/entry_of_place.hpp"
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 #include "physics/scene.hpp"
 

@@ -1,9 +1,9 @@
 // Coupling of flow and mechanics in scenes with both.
 #pragma once
 
-#include "transport/stabilisation.hpp"
 #include "physics/physics.hpp"
 #include "physics/poroelasticity/given_pressure.hpp"
+#include "transport/stabilisation.hpp"
 
 namespace sprekk::physics {
 
