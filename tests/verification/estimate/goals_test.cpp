@@ -119,25 +119,5 @@ TEST(Goals, ErrorsOfReactions) {
   }
 }
 
-/// Values 2, 4, 8, ... and 0: the largest contains half of the sum, the two largest 0.7. Equal values are marked
-/// together.
-TEST(Goals, MarksTheFewestCells) {
-  const auto comm = Tpetra::getDefaultComm();
-  std::vector<Real> here;
-  for (int k = comm->getRank(); k < 12; k += comm->getSize()) here.push_back(k == 0 ? 0 : std::exp2(k) * 1e-7);
-  const auto marked_values = [&](const std::vector<Real>& values, Real theta) {
-    Real n = 0;
-    for (const LocalIndex c : estimate::mark_cells(*comm, values, theta)) {
-      EXPECT_GE(values[c], 1e-7 * std::exp2(theta < 0.6 ? 11 : 10));
-      n += 1;
-    }
-    return sum(*comm, {n});
-  };
-  EXPECT_EQ(marked_values(here, 0.5), 1);
-  EXPECT_EQ(marked_values(here, 0.7), 2);
-  EXPECT_EQ(marked_values(std::vector<Real>(5, 1), 0.1), 5 * comm->getSize());
-  EXPECT_EQ(marked_values(std::vector<Real>(5, 0), 0.5), 0);
-}
-
 }  // namespace
 }  // namespace sprekk::tests
