@@ -16,8 +16,8 @@ from pathlib import Path
 
 MAX_LINES = {  # mean lines of a header
     "base": 84500, "laws": 95000, "mesh": 102500, "fields": 124500, "contact": 116000, "assembly": 120000,
-    "estimate": 127000, "transport": 127000, "physics": 127000, "multigrid": 128000, "solve": 126500,
-    "laboratory": 142000, "io": 118500, "model": 142000,
+    "estimate": 126500, "transport": 125500, "physics": 127000, "multigrid": 128000, "solve": 126500,
+    "laboratory": 160000, "io": 118500, "model": 142000,
 }
 
 
