@@ -1,6 +1,7 @@
 // Flow of a host as a module: the equations of reservoir.hpp as rows of Sprekk's Jacobian.
 #pragma once
 
+#include "assembly/capabilities.hpp"
 #include "mesh/facets.hpp"
 #include "model/model.hpp"
 #include "reservoir.hpp"
@@ -95,7 +96,7 @@ struct FaceFlow {
 };
 
 template <mesh::Shape shape>
-class OwnFlow final : public assembly::Module {
+class OwnFlow final : public assembly::Module, public assembly::Steps {
  public:
   OwnFlow(const mesh::Mesh& mesh, const Fluid& fluid);
 

@@ -1,6 +1,7 @@
 // Modules with residuals in Python, computed with numpy arrays over all entities of a loop at once.
 #include "own_module.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "assembly/loop.hpp"
 
 #include <fmt/ranges.h>
@@ -165,7 +166,10 @@ struct Block {
   }
 };
 
-class OwnModule final : public assembly::Module {
+class OwnModule final : public assembly::Module,
+                        public assembly::Loads,
+                        public assembly::Steps,
+                        public assembly::RowWeights {
  public:
   OwnModule(py::object python, const py::object& mesh, Failure failure)
       : python_(std::move(python)), name_(python_.attr("name").cast<std::string>()), failure_(std::move(failure)) {

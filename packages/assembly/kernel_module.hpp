@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 
 #include <memory>
 #include <optional>
@@ -12,14 +13,14 @@
 
 namespace sprekk::assembly {
 
-/// Properties of a KernelModule; see Module.
+/// Properties of a KernelModule; see Module and Supporting.
 struct Description {
   std::string name, fingerprint;
   std::vector<Unknown> unknowns = {};
   Scales scales = {};
   bool linear = false, holds_bodies = false;
   std::optional<std::vector<contact::Support>> supports = {};
-  Real merit_weight = 0;  ///< weight of the module's own rows if not linear; see Module::merit_weights
+  Real merit_weight = 0;  ///< weight of the module's own rows if not linear; see RowWeights::merit_weights
 };
 
 /// Module with one local operator on one loop. Op must meet the requirements of Assembler, with Rows = Columns, and
@@ -29,7 +30,7 @@ struct Description {
 /// The rows of each of these fields depend on all of them. The unknowns that the module declares are written to the
 /// output.
 template <class Op>
-class KernelModule final : public Module {
+class KernelModule final : public Module, public Supporting, public RowWeights {
  public:
   KernelModule(Description description, Op op) : description_(std::move(description)), op_(std::move(op)) {}
 

@@ -144,7 +144,7 @@ struct Declaration {
   Scales scales;  ///< values without loads, > 0; several modules may declare the same scale
   std::vector<ScaleRelation> relations;
   std::vector<std::pair<std::string, SizeTerm>> sizes;  ///< (field, term added to the size of its rows)
-  std::vector<std::string> schur;                       ///< fields to which add_schur() adds
+  std::vector<std::string> schur;                       ///< fields to which RowWeights::add_schur() adds
   std::vector<std::string> carries;  ///< balances with advection by another flow; the flow may begin within a step, so
                                      ///< the present Jacobian's diagonal measures their rows
   bool stores = false;               ///< its balances contain State::rate times the storage
@@ -180,7 +180,7 @@ struct State {
   ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: computed from x
   std::vector<ConstView<Real*>> x;
   std::vector<View<Real**>> history;
-  /// Residual at the end of the last step, in totals() only: [field](owned row), zero in rows of prescribed unknowns. A
+  /// Residual at the end of the last step, for Totals only: [field](owned row), zero in rows of prescribed unknowns. A
   /// flow is the product of a large conductance and a small difference. Adding the residual removes its round-off.
   /// Empty: no module stores anything.
   std::vector<ConstView<Real*>> unbalanced = {};
@@ -189,6 +189,8 @@ struct State {
 /// Owned rows, [field](row).
 using Rows = std::vector<View<Real*>>;
 
+/// Part of an equation system. Classes of modules also inherit the optional interfaces of capabilities.hpp that they
+/// implement.
 class Module {
  public:
   virtual ~Module() = default;
@@ -210,58 +212,8 @@ class Module {
   /// Adds the derivative of residual() to the blocks of owned rows. Local: no communication.
   virtual void jacobian(const State& state, fields::BlockMatrix& J) const = 0;
 
-  /// Returns whether the forces of the module may support bodies that boundary conditions leave free. Free bodies are
-  /// an error if no module does.
-  virtual bool holds_bodies() const { return false; }
-  /// Returns the supported unknowns at local nodes. No value: unknown; floating blocks of rock are then not detected.
-  virtual std::optional<std::vector<contact::Support>> supports() const { return std::nullopt; }
-  /// Returns the sizes of prescribed or initial quantities at time t on this rank, by the name of their scale.
-  virtual Scales loads(Real t) const { return {}; }
-  /// Returns whether the residual at x = 0 is the same at all times.
-  virtual bool constant_load() const { return true; }
-  /// Sets the non-zero initial unknowns [field](owned unknown).
-  virtual void initial(const Rows& x) const {}
-  /// Sets the non-zero initial histories [number](entity, component).
-  virtual void initial_history(const std::vector<View<Real**>>& history) const {}
-  /// Prepares a step that ends at t. Called before any residual of the step.
-  virtual void set_time(Real t, const Scales& scales) {}
-  /// Prepares a step, with the histories at its start. Called after set_time(). Collective: errors of single ranks must
-  /// be thrown last.
-  virtual void start_step(const State& state) {}
-  /// Updates the histories to `state`, which has converged.
-  virtual void commit(State& state) const {}
-  /// Appends histories on owned entities for the module of this name in a succeeding system. They replace the histories
-  /// of the same names.
-  virtual void pass_on(const State& state, std::vector<std::pair<History, View<Real**>>>& histories) const {}
-  /// Adapts the module to a state and histories taken over from another system.
-  virtual void take_over(State& state) const {}
-  /// Receives the unbalanced residual after take_over(), [field](owned row), zero in rows of prescribed unknowns.
-  virtual void take_unbalanced(State& state, const Rows& residual) const {}
-  /// Adds approximate Schur complements, from the elimination of all other fields, to the diagonals of the fields'
-  /// blocks, [field](owned row). Preconditioners and row sizes use them.
-  virtual void add_schur(const State& state, const Rows& diagonals) const {}
-  /// Adds the stabilising storage to the rows. This storage is not part of the equations, prevents oscillations, and
-  /// vanishes with the cell size. The residual contains State::rate times its increase in the step. Local.
-  virtual void artificial(const State& state, const Rows& rows) const {}
-  /// Sets the base of flux coefficients that are powers of a function of the unknowns, >= 0, [local fracture face]. The
-  /// base is that of the state or, if `widest`, the largest plausible one under the present loads. residual() and
-  /// jacobian() use State::coefficients instead, if given. Local.
-  virtual void coefficients(const State& state, bool widest, std::vector<Real>& values) const {}
-  /// Appends measures of convergence for errors that |residual| does not show, as maxima over this rank.
-  virtual void measure(const State& state, const Scales& scales, std::vector<fields::Measure>& measures) const {}
-  /// Adds weights w of the merit sum(w r^2), an energy, for the module's own rows. Default: 1/|diagonal|.
-  virtual void merit_weights(const Rows& weights) const {}
-  /// Sets the contact states of owned fracture faces, [face].
-  virtual void states(const State& state, std::vector<char>& states) const {}
-  /// Adds the contact constraints of the module at `state` to the grips, [owned fracture face].
-  virtual void grip(const State& state, std::vector<contact::Grip>& grips) const {}
   /// Returns whether the diagonal blocks of this rank's Jacobian at `state` are symmetric after local elimination.
   virtual bool symmetric(const State& state) const { return true; }
-  /// Appends the errors of the step from `begin` (owned unknowns only, old histories) to `end`. The errors are the same
-  /// on all ranks. Collective.
-  virtual void step_errors(const State& begin, const State& end, fields::StepErrors& errors) const {}
-  /// Appends this rank's parts of totals: the same totals in the same order on all ranks. Local.
-  virtual void totals(const State& state, std::vector<Total>& totals) const {}
 };
 
 }  // namespace sprekk::assembly

@@ -43,12 +43,12 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
                const std::vector<DirichletCondition>& conditions, RCP<base::Timers> timers, Rates::Scheme scheme)
     : mesh_(mesh),
       geometry_(*mesh),
-      modules_(std::move(modules)),
       stencils_(std::make_shared<Stencils>(mesh, layouts_)),
       timers_(timers),
       scheme_(scheme),
       extent_(mesh::largest_extent(*mesh)) {
   const auto scope = timers_->scope("set-up");
+  for (auto& module : modules) modules_.emplace_back(std::move(module));
   declare_fields();
   declare_groups();
   for (std::size_t b = 0; b < layouts_.size(); ++b)
@@ -146,15 +146,15 @@ void System::declare_fields() {
   std::set<std::string> names;
   for (const auto& module : modules_)
     for (const auto& unknown : module->declare(*mesh_).unknowns) names.insert(unknown.field.name);
-  for (const auto& module : modules_) {
+  for (auto& module : modules_) {
     module->set_fields(names);
-    declarations_.push_back(module->declare(*mesh_));
-    for (const auto& unknown : declarations_.back().unknowns) unknowns_.push_back(unknown);
+    module.declaration = module->declare(*mesh_);
+    for (const auto& unknown : module.declaration.unknowns) unknowns_.push_back(unknown);
   }
   std::vector<std::string> fields, histories;
   for (const auto& unknown : unknowns_) fields.push_back(unknown.field.name);
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    for (const auto& history : declarations_[m].history) histories.push_back(history_name(m, history));
+  for (const auto& module : modules_)
+    for (const auto& history : module.declaration.history) histories.push_back(module.history_name(history));
   check_names(fields, "field");
   check_names(histories, "history");
   for (const auto& unknown : unknowns_) layouts_.emplace_back(unknown.field, *mesh_);
@@ -172,14 +172,14 @@ void System::declare_fields() {
     schur_.push_back(Teuchos::null);
     load_.push_back(rcp(new fields::Vector(layout.owned())));
   }
-  for (const auto& declaration : declarations_)
-    for (const auto& name : declaration.schur)
+  for (const auto& module : modules_)
+    for (const auto& name : module.declaration.schur)
       if (auto& schur = schur_[context().field(name)]; schur.is_null())
         schur = rcp(new fields::Vector(layouts_[context().field(name)].owned()));
   coupled_ = couples_balances();
   carried_.assign(unknowns_.size(), 0);
-  for (const auto& declaration : declarations_)
-    for (const auto& name : declaration.carries) {
+  for (const auto& module : modules_)
+    for (const auto& name : module.declaration.carries) {
       carried_[context().field(name)] = 1;
       blocks_[context().field(name)].advected = true;
     }
@@ -190,7 +190,8 @@ void System::declare_fields() {
 }
 
 void System::declare_scales() {
-  for (const auto& declaration : declarations_) {
+  for (const auto& module : modules_) {
+    const auto& declaration = module.declaration;
     for (const auto& [name, least] : declaration.scales) scales_[name] = std::max(scales_[name], least);
     relations_.insert(relations_.end(), declaration.relations.begin(), declaration.relations.end());
     for (const auto& [field, term] : declaration.sizes) unknowns_[context().field(field)].row.push_back(term);
@@ -211,8 +212,8 @@ void System::declare_scales() {
 
 bool System::couples_balances() const {
   const auto is_balance = [&](const std::string& name) { return unknowns_[context().field(name)].balance; };
-  for (const auto& declaration : declarations_)
-    for (const auto& coupling : declaration.couplings)
+  for (const auto& module : modules_)
+    for (const auto& coupling : module.declaration.couplings)
       for (const auto& column : coupling.columns)
         if (is_balance(coupling.row) != is_balance(column)) return true;
   return false;
@@ -245,8 +246,8 @@ BlockMatrix System::create_matrix() const {
   const auto context = this->context();
   const int n = static_cast<int>(blocks_.size());
   std::vector<std::vector<std::pair<Stencil, Stencil>>> couplings(n * n);
-  for (const auto& declaration : declarations_)
-    for (const auto& coupling : declaration.couplings) {
+  for (const auto& module : modules_)
+    for (const auto& coupling : module.declaration.couplings) {
       const int row = context.field(coupling.row);
       for (const auto& name : coupling.columns) {
         const int column = context.field(name);
@@ -266,10 +267,10 @@ void System::create_matrices() {
   const auto context = this->context();
   const int n = static_cast<int>(blocks_.size());
   std::vector<char> linear(n * n, 0), nonlinear(n * n, 0);
-  for (const auto& declaration : declarations_)
-    for (const auto& coupling : declaration.couplings)
+  for (const auto& module : modules_)
+    for (const auto& coupling : module.declaration.couplings)
       for (const auto& column : coupling.columns)
-        (declaration.linear ? linear : nonlinear)[context.field(coupling.row) * n + context.field(column)] = 1;
+        (module.declaration.linear ? linear : nonlinear)[context.field(coupling.row) * n + context.field(column)] = 1;
   linear_ = create_matrix();
   matrix_ = linear_;
   for (int i = 0; i < n; ++i)
@@ -284,12 +285,11 @@ void System::create_matrices() {
 
 void System::bind_modules() {
   const auto context = this->context();
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    base::collectively(*comm(), [&] { modules_[m]->bind(context); });
-    history_.emplace_back();
-    for (const auto& h : declarations_[m].history)
-      history_[m].emplace_back(h.name, fields::n_entities(*mesh_, h.entity, false), h.n_components);
-    modules_[m]->initial_history(history_[m]);
+  for (auto& module : modules_) {
+    base::collectively(*comm(), [&] { module->bind(context); });
+    for (const auto& h : module.declaration.history)
+      module.history.emplace_back(h.name, fields::n_entities(*mesh_, h.entity, false), h.n_components);
+    if (module.initial_values) module.initial_values->initial_history(module.history);
   }
 }
 
@@ -305,8 +305,8 @@ void System::declare_gains() {
 void System::find_exchanges() {
   const auto context = this->context();
   std::vector<int> here(blocks_.size(), 0);
-  for (const auto& declaration : declarations_) {
-    for (const auto& coupling : declaration.couplings)
+  for (const auto& module : modules_)
+    for (const auto& coupling : module.declaration.couplings)
       for (const auto& name : coupling.columns) {
         const int f = context.field(name);
         const auto first = context.stencil(coupling.loop, f).first;
@@ -314,15 +314,14 @@ void System::find_exchanges() {
         for (std::size_t e = 0; e < host.extent(0); ++e)
           for (std::size_t g = 0; g < host.extent(1); ++g) here[f] |= host(e, g) >= layouts_[f].n_owned();
       }
-  }
   const auto anywhere = base::max_over_ranks(*comm(), here);
   needs_ghosts_.assign(anywhere.begin(), anywhere.end());
 }
 
 void System::assemble_linear() {
   const auto scope = timers_->scope("assembly of the linear part");
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    if (declarations_[m].linear) modules_[m]->jacobian(state(static_cast<int>(m)), linear_);
+  for (const auto& module : modules_)
+    if (module.declaration.linear) module->jacobian(state(module), linear_);
 }
 
 /// Sets the matrix to the linear part. The Jacobians of the other modules are added to it.
@@ -359,21 +358,22 @@ std::shared_ptr<fields::KeptRows> System::share(int block, const RCP<const field
 void System::assemble_balances() {
   const auto context = this->context();
   start_matrix();
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    const auto& couplings = declarations_[m].couplings;
+  for (const auto& module : modules_) {
+    const auto& couplings = module.declaration.couplings;
     const bool balances = std::any_of(couplings.begin(), couplings.end(), [&](const auto& coupling) {
       return unknowns_[context.field(coupling.row)].balance;
     });
-    if (declarations_[m].linear || !balances) continue;
-    auto at_rest = state(static_cast<int>(m));
+    if (module.declaration.linear || !balances) continue;
+    auto at_rest = state(module);
     at_rest.rate = 0;
-    modules_[m]->jacobian(at_rest, matrix_);
+    module->jacobian(at_rest, matrix_);
   }
 }
 
 void System::set_merit_weights() {
   const auto views = rows(weights_);
-  for (const auto& module : modules_) module->merit_weights(views);
+  for (const auto& module : modules_)
+    if (module.weights) module.weights->merit_weights(views);
   assemble_balances();
   for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
     const auto& A = unknowns_[b].balance ? matrix_(b, b) : linear_(b, b);
@@ -394,15 +394,17 @@ void System::set_merit_weights() {
 std::vector<contact::Support> System::supports_of(int displacement) const {
   auto all = constraints_[displacement].supports();
   const auto n_owned = static_cast<LocalIndex>(base::n_local_elements(*layouts_[displacement].owned()));
-  for (const auto& module : modules_)
-    for (const auto& support : module->supports().value_or(std::vector<contact::Support>()))
+  for (const auto& module : modules_) {
+    if (!module.supporting) continue;
+    for (const auto& support : module.supporting->supports().value_or(std::vector<contact::Support>()))
       if (support.unknown < n_owned) all.push_back(support);
+  }
   return all;
 }
 
 void System::watch_contact() {
-  const bool held =
-      std::any_of(modules_.begin(), modules_.end(), [](const auto& m) { return m->holds_bodies() && !m->supports(); });
+  const bool held = std::any_of(modules_.begin(), modules_.end(),
+                                [](const auto& m) { return m.holds_bodies() && !m.supporting->supports(); });
   int& displacement = contact_blocks_.displacement;
   for (int b = 0; b < static_cast<int>(blocks_.size()) && !held; ++b)
     if (unknowns_[b].near_null_space == NearNullSpace::rigid_motions) displacement = b;
@@ -442,15 +444,16 @@ BlockVector System::initial() const {
   BlockVector x;
   for (const auto& block : blocks_) x.push_back(rcp(new fields::Vector(block.map)));
   const auto views = rows(x);
-  for (const auto& module : modules_) module->initial(views);
+  for (const auto& module : modules_)
+    if (module.initial_values) module.initial_values->initial(views);
   return x;
 }
 
 std::vector<std::pair<fields::Field, View<Real**>>> System::histories(bool rates) const {
   std::vector<std::pair<fields::Field, View<Real**>>> all;
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    for (std::size_t h = 0; h < history_[m].size(); ++h)
-      all.emplace_back(history_field(m, declarations_[m].history[h]), history_[m][h]);
+  for (const auto& module : modules_)
+    for (std::size_t h = 0; h < module.history.size(); ++h)
+      all.emplace_back(module.history_field(module.declaration.history[h]), module.history[h]);
   for (std::size_t b = 0; b < gains_.size(); ++b) {
     const auto& field = layouts_[b].field();
     if (gains_[b].extent(0) > 0)
@@ -461,21 +464,13 @@ std::vector<std::pair<fields::Field, View<Real**>>> System::histories(bool rates
   return all;
 }
 
-fields::Field System::history_field(std::size_t module, const History& history) const {
-  return {history_name(module, history), history.entity, history.n_components, ""};
-}
-
-std::string System::history_name(std::size_t module, const History& history) const {
-  return modules_[module]->name() + ": " + history.name;
-}
-
 std::vector<std::pair<fields::Field, View<Real**>>> System::passed_on(const BlockVector& x) {
   refresh_ghosts(x, false);
   std::vector<std::pair<fields::Field, View<Real**>>> all;
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
+  for (const auto& module : modules_) {
     std::vector<std::pair<History, View<Real**>>> histories;
-    modules_[m]->pass_on(state(static_cast<int>(m)), histories);
-    for (const auto& [history, values] : histories) all.emplace_back(history_field(m, history), values);
+    if (module.transfer) module.transfer->pass_on(state(module), histories);
+    for (const auto& [history, values] : histories) all.emplace_back(module.history_field(history), values);
   }
   return all;
 }
@@ -496,9 +491,10 @@ void System::prescribe(Real t, BlockVector& x) {
 
 void System::take_over(const BlockVector& x) {
   refresh_ghosts(x, false);
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    auto s = state(static_cast<int>(m));
-    modules_[m]->take_over(s);
+  for (const auto& module : modules_) {
+    if (!module.transfer) continue;
+    auto s = state(module);
+    module.transfer->take_over(s);
   }
 }
 
@@ -533,9 +529,10 @@ void System::tell_unbalanced(const BlockVector& x) {
         });
   }
   const auto views = rows(r);
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    auto s = state(static_cast<int>(m));
-    modules_[m]->take_unbalanced(s, views);
+  for (const auto& module : modules_) {
+    if (!module.transfer) continue;
+    auto s = state(module);
+    module.transfer->take_unbalanced(s, views);
   }
 }
 

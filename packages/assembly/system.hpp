@@ -1,8 +1,8 @@
 // Equation system of a list of modules. Blocks, sparsity, ghosts and storage follow from their declarations.
 #pragma once
 
+#include "assembly/bound_module.hpp"
 #include "assembly/constraints.hpp"
-#include "assembly/module.hpp"
 #include "assembly/rates.hpp"
 #include "assembly/relaxation.hpp"
 #include "base/timer.hpp"
@@ -92,7 +92,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Sets prescribed unknowns to their values at t. Throws an Error on all ranks, see Constraints::evaluate.
   /// Collective.
   void prescribe(Real t, fields::BlockVector& x);
-  /// Returns the histories for a system that continues from x, with the names of histories(). See Module::pass_on.
+  /// Returns the histories for a system that continues from x, with the names of histories(). See Transfer::pass_on.
   /// Collective.
   std::vector<std::pair<fields::Field, View<Real**>>> passed_on(const fields::BlockVector& x);
   /// Lets modules take over x and the histories of another system. Call before resume(). Collective.
@@ -116,7 +116,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
 
   const mesh::Mesh& mesh() const { return *mesh_; }
-  const std::vector<std::unique_ptr<Module>>& modules() const { return modules_; }
+  const std::vector<BoundModule>& modules() const { return modules_; }
   const std::vector<fields::Layout>& layouts() const { return layouts_; }
   const Scales& scales() const { return scales_; }
   /// Returns whether a module reads ghosts of the block. Such blocks are exchanged once per residual.
@@ -131,7 +131,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Returns the increase of the storage from x to x + dx for small dx, without the factor of the rates, minus
   /// artificially_stored(x). Collective.
   fields::BlockVector stored(const fields::BlockVector& x, const fields::BlockVector& dx);
-  /// Returns the stabilising storage at x, see Module::artificial. Collective.
+  /// Returns the stabilising storage at x, see ArtificialStorage. Collective.
   fields::BlockVector artificially_stored(const fields::BlockVector& x);
 
  private:
@@ -152,7 +152,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void find_exchanges();
   std::vector<contact::Support> supports_of(int displacement) const;
   void watch_contact();
-  State state(int module) const;
+  State state(const BoundModule& module) const;
   bool keeps_gains() const { return scheme_ != Rates::Scheme::implicit_euler; }
   void declare_gains();
   void find_gains();
@@ -160,8 +160,6 @@ class System : public fields::BlockProblem, private contact::Equations {
   void find_errors(const fields::BlockVector& x);
   void resume_errors(const fields::BlockVector& x, const std::vector<Real>& memory);
   fields::BlockVector loads(const fields::BlockVector& x, Real t, Real dt);
-  fields::Field history_field(std::size_t module, const History& history) const;
-  std::string history_name(std::size_t module, const History& history) const;
   void refresh_ghosts(const fields::BlockVector& x, bool all);
   Rows rows(fields::BlockVector& r) const;
   Real rounding(const fields::BlockVector& x, const std::string& scale) const;
@@ -177,15 +175,13 @@ class System : public fields::BlockProblem, private contact::Equations {
 
   RCP<const mesh::Mesh> mesh_;
   Geometry geometry_;
-  std::vector<std::unique_ptr<Module>> modules_;
-  std::vector<Declaration> declarations_;  // [module]
-  std::vector<Unknown> unknowns_;          // [block]
-  std::vector<fields::Layout> layouts_;    // [block]
+  std::vector<BoundModule> modules_;
+  std::vector<Unknown> unknowns_;        // [block]
+  std::vector<fields::Layout> layouts_;  // [block]
   std::shared_ptr<Stencils> stencils_;
   std::vector<fields::Block> blocks_;
   std::vector<fields::LocalGroup> groups_;
-  std::vector<Constraints> constraints_;            // [block]
-  std::vector<std::vector<View<Real**>>> history_;  // [module][number](owned entity, component)
+  std::vector<Constraints> constraints_;  // [block]
   std::vector<View<Real**>> gains_;  // [block](owned entity, component) storage increase of the last step, or empty
   std::vector<char> needs_ghosts_;   // [block]
   fields::BlockVector ghosted_;      // [block] unknowns with ghosts

@@ -10,7 +10,7 @@ namespace sprekk::assembly {
 using fields::BlockVector;
 
 bool System::has_rates() const {
-  return std::any_of(declarations_.begin(), declarations_.end(), [](const auto& d) { return d.stores; });
+  return std::any_of(modules_.begin(), modules_.end(), [](const auto& m) { return m.declaration.stores; });
 }
 
 void System::watch_errors(Real duration) {
@@ -41,11 +41,12 @@ void System::find_errors(const BlockVector& x) {
   for (const auto& block : blocks_) least.push_back(noise * block.kinematic_scale);
   auto errors = rate_errors_->of_step(x, dt_, rates_.before > 0, least);
   const auto owned = rows(committed_x_);
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    const auto end = state(static_cast<int>(m));
+  for (const auto& module : modules_) {
+    if (!module.errors) continue;
+    const auto end = state(module);
     auto begin = end;
     begin.x.assign(owned.begin(), owned.end());
-    modules_[m]->step_errors(begin, end, errors);
+    module.errors->step_errors(begin, end, errors);
   }
   fields::copy(x, committed_x_);
   for (const auto& error : errors) {
@@ -78,11 +79,11 @@ BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
   refresh_ghosts(x, false);
   auto all = fields::create_like(x), prescribed = fields::create_like(x);
   const auto views = rows(all), values = rows(prescribed);
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    if (modules_[m]->constant_load()) continue;
-    auto s = state(static_cast<int>(m));
+  for (const auto& module : modules_) {
+    if (module.has_constant_load()) continue;
+    auto s = state(module);
     s.rate = 0;
-    modules_[m]->residual(s, views);
+    module->residual(s, views);
   }
   for (std::size_t b = 0; b < all.size(); ++b)
     if (!constraints_[b].conditions().empty())

@@ -60,14 +60,14 @@ void System::refresh_ghosts(const BlockVector& x, bool all) {
 }
 
 /// Returns views of the values of the last refresh_ghosts().
-State System::state(int module) const {
+State System::state(const BoundModule& module) const {
   State s{.t = t_,
           .rate = rates_.now,
           .before = rates_.before,
           .contact = contact_ ? contact_->regularisation() : contact::Regularisation(),
           .coefficients = coefficients_,
           .x = {},
-          .history = history_[module]};
+          .history = module.history};
   for (const auto& v : ghosted_) s.x.push_back(const_view(*v));
   return s;
 }
@@ -83,11 +83,13 @@ void System::update_scales(Real t) {
       Real& largest = loads.at(unknowns_[b].scale);
       largest = std::max(largest, constraints_[b].largest());
     }
-    for (const auto& module : modules_)
-      for (const auto& [name, size] : module->loads(t)) {
+    for (const auto& module : modules_) {
+      if (!module.loads) continue;
+      for (const auto& [name, size] : module.loads->loads(t)) {
         SPREKK_CHECK(loads.count(name), "{}: no module declares the scale \"{}\"", module->name(), name);
         loads.at(name) = std::max(loads.at(name), size);
       }
+    }
   });
   for (auto& [name, scale] : scales_) scale = base::max_over_ranks(*comm(), loads.at(name));
   for (std::size_t pass = 0; pass < scales_.size(); ++pass)
@@ -114,12 +116,14 @@ void System::set_time(Real t, Real dt) {
   bool changes = !loaded_;
   base::collectively(*comm(), [&] {
     for (const auto& module : modules_) {
-      module->set_time(t, scales_);
-      changes = changes || !module->constant_load();
+      if (!module.loads) continue;
+      module.loads->set_time(t, scales_);
+      changes = changes || !module.loads->constant_load();
     }
   });
   base::collectively(*comm(), [&] {
-    for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->start_step(state(static_cast<int>(m)));
+    for (const auto& module : modules_)
+      if (module.steps) module.steps->start_step(state(module));
   });
   if (!changes) return;
   for (std::size_t b = 0; b < load_.size(); ++b) {
@@ -127,8 +131,8 @@ void System::set_time(Real t, Real dt) {
     ghosted_[b]->putScalar(0);
   }
   const auto views = rows(load_);
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    if (declarations_[m].linear) modules_[m]->residual(state(static_cast<int>(m)), views);
+  for (const auto& module : modules_)
+    if (module.declaration.linear) module->residual(state(module), views);
   loaded_ = true;
 }
 
@@ -142,10 +146,10 @@ void System::raw_residual(const BlockVector& x, BlockVector& r) {
     for (int j = 0; j < n; ++j) linear_.add_local_product(i, j, *linear_in[j], *r[i]);
   }
   const auto views = rows(r);
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    if (declarations_[m].linear) continue;
-    const auto scope_of_module = timers_->scope(modules_[m]->name());
-    modules_[m]->residual(state(static_cast<int>(m)), views);
+  for (const auto& module : modules_) {
+    if (module.declaration.linear) continue;
+    const auto scope_of_module = timers_->scope(module->name());
+    module->residual(state(module), views);
   }
   for (int b = 0; b < n && rates_.before > 0; ++b) {
     if (gains_[b].extent(0) == 0) continue;
@@ -167,12 +171,12 @@ void System::find_gains() {
     rest.push_back(rcp(new fields::Vector(block.map)));
   }
   const auto with = rows(gained), without = rows(rest);
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    if (!declarations_[m].stores) continue;
-    auto s = state(static_cast<int>(m));
-    modules_[m]->residual(s, with);
+  for (const auto& module : modules_) {
+    if (!module.declaration.stores) continue;
+    auto s = state(module);
+    module->residual(s, with);
     s.rate = 0;
-    modules_[m]->residual(s, without);
+    module->residual(s, without);
   }
   const Real rate = rates_.now;
   for (std::size_t b = 0; b < blocks_.size(); ++b) set_gains(gains_[b], with[b], without[b], rate);
@@ -198,12 +202,12 @@ void System::jacobian(const BlockVector& x) {
   const auto scope = timers_->scope("Jacobian");
   bool symmetric = true;
   start_matrix();
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    if (declarations_[m].linear) continue;
-    const auto scope_of_module = timers_->scope(modules_[m]->name());
-    const auto s = state(static_cast<int>(m));
-    modules_[m]->jacobian(s, matrix_);
-    symmetric = modules_[m]->symmetric(s) && symmetric;
+  for (const auto& module : modules_) {
+    if (module.declaration.linear) continue;
+    const auto scope_of_module = timers_->scope(module->name());
+    const auto s = state(module);
+    module->jacobian(s, matrix_);
+    symmetric = module->symmetric(s) && symmetric;
   }
   symmetric_ = base::on_all_ranks(*comm(), symmetric);
   find_schur();
@@ -216,8 +220,8 @@ void System::find_schur() {
     if (!schur.is_null()) schur->putScalar(0);
     sums.push_back(schur.is_null() ? View<Real*>() : owned_view(*schur));
   }
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    if (!declarations_[m].schur.empty()) modules_[m]->add_schur(state(static_cast<int>(m)), sums);
+  for (const auto& module : modules_)
+    if (module.weights && !module.declaration.schur.empty()) module.weights->add_schur(state(module), sums);
   if (present_.empty()) present_ = diagonals_;
   for (std::size_t b = 0; b < blocks_.size() && changing_; ++b)  // excludes the linear part without rates
     if (unknowns_[b].balance) {
@@ -241,9 +245,10 @@ void System::commit(const BlockVector& x) {
   if (rate_errors_) find_errors(x);
   committed_t_ = t_;
   committed_dt_ = dt_;
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    auto s = state(static_cast<int>(m));
-    modules_[m]->commit(s);
+  for (const auto& module : modules_) {
+    if (!module.steps) continue;
+    auto s = state(module);
+    module.steps->commit(s);
   }
 }
 
@@ -391,9 +396,10 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
         Kokkos::Max<Real>(largest));
     measures.push_back({blocks_[b].name, largest});
   }
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    const auto scope_of_module = timers_->scope(modules_[m]->name());
-    modules_[m]->measure(state(static_cast<int>(m)), scales_, measures);
+  for (const auto& module : modules_) {
+    if (!module.errors) continue;
+    const auto scope_of_module = timers_->scope(module->name());
+    module.errors->measure(state(module), scales_, measures);
   }
   std::vector<Real> here;
   for (const auto& measure : measures)  // the maximum must not hide NaN
@@ -440,7 +446,8 @@ Real System::merit(const BlockVector& x, const BlockVector& r) {
 /// Returns the contact constraints at the x of the last refresh_ghosts().
 std::vector<contact::Grip> System::present_grips() {
   std::vector<contact::Grip> grips(mesh_->n_owned_fracture_faces);
-  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->grip(state(static_cast<int>(m)), grips);
+  for (const auto& module : modules_)
+    if (module.contact) module.contact->grip(state(module), grips);
   return grips;
 }
 
@@ -471,9 +478,10 @@ contact::Sizes System::sizes() const {
 std::vector<char> System::states(const BlockVector& x) {
   refresh_ghosts(x, false);
   std::vector<char> states(mesh_->n_owned_fracture_faces);
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    const auto scope_of_module = timers_->scope(modules_[m]->name());
-    modules_[m]->states(state(static_cast<int>(m)), states);
+  for (const auto& module : modules_) {
+    if (!module.contact) continue;
+    const auto scope_of_module = timers_->scope(module->name());
+    module.contact->states(state(module), states);
   }
   return states;
 }
@@ -481,10 +489,10 @@ std::vector<char> System::states(const BlockVector& x) {
 std::vector<OutputField> System::outputs(const BlockVector& x) {
   refresh_ghosts(x, true);
   std::vector<OutputField> outputs;
-  for (std::size_t m = 0; m < modules_.size(); ++m) {
-    const auto at = state(static_cast<int>(m));
+  for (const auto& module : modules_) {
+    const auto at = state(module);
     base::collectively(*comm(), [&] {
-      for (const auto& [field, values] : declarations_[m].outputs) {
+      for (const auto& [field, values] : module.declaration.outputs) {
         outputs.push_back(field);
         outputs.back().values = values(at);
       }
@@ -497,10 +505,11 @@ std::vector<Total> System::totals(const BlockVector& x) {
   refresh_ghosts(x, false);
   std::vector<Total> totals;
   base::collectively(*comm(), [&] {
-    for (std::size_t m = 0; m < modules_.size(); ++m) {
-      auto s = state(static_cast<int>(m));
+    for (const auto& module : modules_) {
+      if (!module.totals) continue;
+      auto s = state(module);
       for (const auto& v : unbalanced_) s.unbalanced.push_back(const_view(*v));
-      modules_[m]->totals(s, totals);
+      module.totals->totals(s, totals);
     }
   });
   std::vector<Real> here;
@@ -554,7 +563,7 @@ std::vector<Reaction> System::sums_of_held(const BlockVector& r) const {
 void System::module_residual(int module, const BlockVector& x, BlockVector& r) {
   refresh_ghosts(x, true);
   for (const auto& v : r) v->putScalar(0);
-  modules_[module]->residual(state(module), rows(r));
+  modules_[module]->residual(state(modules_[module]), rows(r));
 }
 
 void System::module_jacobian(int module, const BlockVector& x, BlockMatrix& J) {
@@ -562,14 +571,15 @@ void System::module_jacobian(int module, const BlockVector& x, BlockMatrix& J) {
   for (int i = 0; i < J.n_blocks(); ++i)
     for (int j = 0; j < J.n_blocks(); ++j)
       if (!J(i, j).is_null()) Kokkos::deep_copy(J(i, j)->getLocalMatrixDevice().values, 0.0);
-  modules_[module]->jacobian(state(module), J);
+  modules_[module]->jacobian(state(modules_[module]), J);
 }
 
 BlockVector System::artificially_stored(const BlockVector& x) {
   auto sum = fields::create_like(x);
   refresh_ghosts(x, true);
   const auto views = rows(sum);
-  for (std::size_t m = 0; m < modules_.size(); ++m) modules_[m]->artificial(state(static_cast<int>(m)), views);
+  for (const auto& module : modules_)
+    if (module.artificial_storage) module.artificial_storage->artificial(state(module), views);
   return sum;
 }
 
@@ -580,7 +590,7 @@ BlockVector System::stored(const BlockVector& x, const BlockVector& dx) {
   auto J = create_matrix();
   const Rates rates = rates_;
   for (std::size_t m = 0; m < modules_.size(); ++m) {
-    if (!declarations_[m].stores) continue;
+    if (!modules_[m].declaration.stores) continue;
     for (const Real rate : {rates.now, Real(0)}) {
       rates_.now = rate;
       module_jacobian(static_cast<int>(m), x, J);

@@ -19,8 +19,8 @@ Real System::lag(Lag how, const fields::BlockVector& x) {
   }
   refresh_ghosts(x, false);
   std::vector<Real> found(mesh_->n_fracture_faces(), -1);  // negative: no coefficient
-  for (std::size_t m = 0; m < modules_.size(); ++m)
-    modules_[m]->coefficients(state(static_cast<int>(m)), how == Lag::widest, found);
+  for (const auto& module : modules_)
+    if (module.coefficients) module.coefficients->coefficients(state(module), how == Lag::widest, found);
   Real here = -1;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (found[f] < 0) continue;

@@ -103,8 +103,10 @@ Model::Draft Model::drafted(Scene scene, const std::string& unheld) const {
     draft.modules = make_modules(draft.scene, mesh);
     if (more_modules_)
       for (auto& module : more_modules_(mesh)) draft.modules.push_back(std::move(module));
-    const bool held =
-        std::any_of(draft.modules.begin(), draft.modules.end(), [](const auto& m) { return m->holds_bodies(); });
+    const bool held = std::any_of(draft.modules.begin(), draft.modules.end(), [](const auto& module) {
+      const auto* forces = dynamic_cast<const assembly::Supporting*>(module.get());
+      return forces && forces->holds_bodies();
+    });
     SPREKK_CHECK(unheld.empty() || held, "{}: {}", draft.scene.origin, unheld);
   });
   return draft;

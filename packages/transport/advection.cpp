@@ -1,5 +1,6 @@
 #include "transport/advection.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "transport/antidiffusion.hpp"
 #include "transport/fracture_faces.hpp"
 #include "transport/hybrid_rock.hpp"
@@ -193,7 +194,7 @@ struct InFractures {
 };
 
 template <class Where>
-class AdvectionModule final : public assembly::Module {
+class AdvectionModule final : public assembly::Module, public assembly::Steps, public assembly::Transfer {
  public:
   AdvectionModule(Where where, const Carried& carried, std::optional<std::vector<Real>> stored)
       : where_(std::make_unique<Where>(std::move(where))), carried_(carried), stored_(std::move(stored)) {}

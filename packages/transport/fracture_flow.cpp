@@ -1,5 +1,6 @@
 #include "transport/fracture_flow.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "assembly/term.hpp"
 #include "mesh/extents.hpp"
 #include "transport/fracture_faces.hpp"
@@ -14,7 +15,10 @@ using assembly::Loop;
 namespace {
 
 template <Shape shape>
-class FractureFlow final : public assembly::Module {
+class FractureFlow final : public assembly::Module,
+                           public assembly::Loads,
+                           public assembly::LaggedCoefficients,
+                           public assembly::Totals {
  public:
   using Plane = FacePlane<shape>;
   static constexpr int dim = Plane::dim, n = Plane::n;

@@ -1,5 +1,6 @@
 #include "transport/hybrid_diffusion.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "assembly/term.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
@@ -18,7 +19,10 @@ using assembly::Loop;
 namespace {
 
 template <Shape shape>
-class HybridDiffusion final : public assembly::Module {
+class HybridDiffusion final : public assembly::Module,
+                              public assembly::Loads,
+                              public assembly::InitialValues,
+                              public assembly::Totals {
  public:
   using Op = HybridCell<shape>;
   static constexpr int dim = Op::dim, n_faces = Op::n;

@@ -1,6 +1,7 @@
 #include "transport/storage.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "transport/changed_flow.hpp"
 
 #include <algorithm>
@@ -125,7 +126,10 @@ struct Stored {
 using Find = std::function<std::vector<Stored>(const mesh::Mesh&)>;
 
 template <class Op, bool changes>
-class Storage final : public assembly::Module {
+class Storage final : public assembly::Module,
+                      public assembly::Loads,
+                      public assembly::InitialValues,
+                      public assembly::Steps {
  public:
   static constexpr int m = Op::Columns::size, n = m + changes;  // components of the history
 

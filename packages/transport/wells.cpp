@@ -1,5 +1,6 @@
 #include "transport/wells.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "assembly/load.hpp"
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -15,7 +16,7 @@ namespace sprekk::transport {
 
 namespace {
 
-class Wells final : public assembly::Module {
+class Wells final : public assembly::Module, public assembly::Loads, public assembly::Steps, public assembly::Totals {
  public:
   explicit Wells(WellsParameters parameters) : parameters_(std::move(parameters)) {}
 

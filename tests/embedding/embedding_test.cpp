@@ -1,5 +1,6 @@
 // Interface for hosts: scenes built in C++ are checked like files, and fields are accessible in place. Modules of the
 // host have the same services as built-in modules, and their unknowns are part of the system.
+#include "assembly/capabilities.hpp"
 #include "assembly/jacobian_check.hpp"
 #include "base/xml.hpp"
 #include "hosts/grout.hpp"
@@ -243,7 +244,7 @@ TEST(Fields, AreReachedInPlace) {
 }
 
 /// Module that counts the steps on every node.
-class Counter : public assembly::Module {
+class Counter : public assembly::Module, public assembly::Steps {
  public:
   explicit Counter(const std::string& of = "steps") : of_(of) {}
   std::string name() const override { return "counter"; }

@@ -1,6 +1,7 @@
 #include "physics/heat/fracture_heat.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "mesh/facets.hpp"
 #include "transport/face_plane.hpp"
 
@@ -45,7 +46,7 @@ struct Filling {
 };
 
 template <Shape shape, bool expands>
-class FractureHeat final : public assembly::Module {
+class FractureHeat final : public assembly::Module, public assembly::InitialValues, public assembly::Steps {
  public:
   using Plane = transport::FacePlane<shape>;
   static constexpr int n = Plane::n;
@@ -93,7 +94,6 @@ class FractureHeat final : public assembly::Module {
     conduction_assembler_->add_jacobian(conduction_, state, J);
     filling_assembler_->add_jacobian(filling(state), state, J);
   }
-  bool symmetric(const assembly::State&) const override { return true; }
 
   void initial_history(const std::vector<View<Real**>>& history) const override {
     const auto kept = Kokkos::create_mirror_view(history[0]);

@@ -1,6 +1,7 @@
 #include "physics/heat/thermal_expansion.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
@@ -18,7 +19,7 @@ using assembly::Slot;
 
 namespace {
 
-class ThermalStress final : public assembly::Module {
+class ThermalStress final : public assembly::Module, public assembly::Loads {
  public:
   ThermalStress(const mesh::Mesh& mesh, ThermalStressParameters parameters)
       : parameters_(std::move(parameters)),
@@ -152,7 +153,7 @@ struct Expansion {
   KOKKOS_INLINE_FUNCTION void jacobian(int c, const Real (&)[1], Real (&J)[1][1]) const { J[0][0] = -room(c) * rate; }
 };
 
-class PoreExpansion final : public assembly::Module {
+class PoreExpansion final : public assembly::Module, public assembly::InitialValues, public assembly::Steps {
  public:
   explicit PoreExpansion(PoreExpansionParameters parameters) : parameters_(std::move(parameters)) {}
 

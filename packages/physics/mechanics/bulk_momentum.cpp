@@ -1,6 +1,7 @@
 #include "physics/mechanics/bulk_momentum.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "assembly/load.hpp"
 #include "assembly/tip_cell.hpp"
 #include "base/over_ranks.hpp"
@@ -18,7 +19,10 @@ using mesh::Shape;
 namespace {
 
 template <Shape shape>
-class BulkMomentum final : public assembly::Module {
+class BulkMomentum final : public assembly::Module,
+                           public assembly::Loads,
+                           public assembly::Steps,
+                           public assembly::Transfer {
  public:
   using Op = ElasticCell<shape>;
   static constexpr int dim = Op::dim, n = Op::n;

@@ -1,5 +1,6 @@
 #include "physics/mechanics/elastic_plastic_jump.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
@@ -53,7 +54,12 @@ int joint_of(const ElasticPlasticJumpParameters& parameters, const mesh::Mesh& m
 }
 
 template <int dim>
-class ElasticPlasticJump final : public assembly::Module {
+class ElasticPlasticJump final : public assembly::Module,
+                                 public assembly::InitialValues,
+                                 public assembly::Steps,
+                                 public assembly::ContactFaces,
+                                 public assembly::RowWeights,
+                                 public assembly::Errors {
  public:
   using Points = JointPoints<dim>;
   using Point = JointPoint<dim>;

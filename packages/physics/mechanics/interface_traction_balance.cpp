@@ -1,6 +1,7 @@
 #include "physics/mechanics/interface_traction_balance.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/balanced_side.hpp"
 #include "physics/mechanics/bubble_stiffness.hpp"
@@ -16,7 +17,7 @@ using mesh::Shape;
 namespace {
 
 template <Shape shape>
-class InterfaceTractionBalance final : public assembly::Module {
+class InterfaceTractionBalance final : public assembly::Module, public assembly::Loads {
  public:
   using Op = BalancedSide<shape>;
   static constexpr int dim = Op::dim, n = Op::n;

@@ -1,5 +1,7 @@
 #include "physics/mechanics/release.hpp"
 
+#include "assembly/capabilities.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +27,7 @@ void take(Real held, const View<Real*>& rows, const View<Real**>& history) {
       });
 }
 
-class Release final : public assembly::Module {
+class Release final : public assembly::Module, public assembly::Loads, public assembly::Transfer {
  public:
   Release(Real begin, Real end) : begin_(begin), end_(end) {}
 

@@ -1,5 +1,6 @@
 #include "physics/mechanics/solid_pressure.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "assembly/geometry.hpp"
 #include "assembly/term.hpp"
 #include "mesh/extents.hpp"
@@ -76,7 +77,7 @@ std::array<Real, 2> bubble_of(const mesh::Mesh& mesh, LocalIndex cell, int local
   return {volume, energy};
 }
 
-class SolidPressure final : public assembly::Module {
+class SolidPressure final : public assembly::Module, public assembly::RowWeights {
  public:
   SolidPressure(const mesh::Mesh& mesh, SolidPressureParameters parameters)
       : parameters_(std::move(parameters)),

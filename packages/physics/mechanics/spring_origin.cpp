@@ -1,5 +1,6 @@
 #include "physics/mechanics/spring_origin.hpp"
 
+#include "assembly/bound_module.hpp"
 #include "assembly/load.hpp"
 
 #include <utility>
@@ -15,7 +16,11 @@ View<Real*> values_of(fields::Vector& vector) {
   return View<Real*>(local.data(), local.extent(0));
 }
 
-class SpringOrigin final : public assembly::Module {
+class SpringOrigin final : public assembly::Module,
+                           public assembly::Loads,
+                           public assembly::Steps,
+                           public assembly::Transfer,
+                           public assembly::Supporting {
  public:
   SpringOrigin(std::unique_ptr<assembly::Module> springs, std::string name, const std::array<Real, 3>& stiffness,
                bool keeps)
@@ -36,8 +41,8 @@ class SpringOrigin final : public assembly::Module {
     layout_ = context.layout(displacement_);
     load_ = assembly::Load(layout_->n_owned());
   }
-  bool holds_bodies() const override { return springs_->holds_bodies(); }
-  std::optional<std::vector<contact::Support>> supports() const override { return springs_->supports(); }
+  bool holds_bodies() const override { return springs_.holds_bodies(); }
+  std::optional<std::vector<contact::Support>> supports() const override { return springs_.supporting->supports(); }
   bool constant_load() const override { return !keeps_; }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override { springs_->jacobian(state, J); }
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -82,7 +87,7 @@ class SpringOrigin final : public assembly::Module {
     const auto values = Kokkos::create_mirror_view(result);
     const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
     const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), before);
-    const auto sprung = springs_->supports().value();
+    const auto sprung = springs_.supporting->supports().value();
     for (const auto& [unknown, i] : sprung)
       if (const LocalIndex node = unknown / dim_; unknown < layout_->n_owned())
         values(node, i) = value(stiffness_[i], u(unknown), kept(node, i));
@@ -90,7 +95,7 @@ class SpringOrigin final : public assembly::Module {
     return result;
   }
 
-  std::unique_ptr<assembly::Module> springs_;
+  assembly::BoundModule springs_;
   std::string name_;
   std::array<Real, 3> stiffness_;
   bool keeps_;

@@ -1,6 +1,7 @@
 #include "physics/mechanics/tip_enrichment.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "assembly/load.hpp"
 #include "assembly/tip_cell.hpp"
 #include "mesh/extents.hpp"
@@ -53,7 +54,7 @@ struct EnrichedCell {
 };
 
 template <Shape shape>
-class TipEnrichment final : public assembly::Module {
+class TipEnrichment final : public assembly::Module, public assembly::Loads {
  public:
   using Tip = assembly::TipCell<shape>;
   static constexpr int dim = Tip::dim, n = Tip::n;

@@ -1,6 +1,7 @@
 #include "physics/poroelasticity/given_pressure.hpp"
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "base/check.hpp"
 #include "fields/properties.hpp"
 #include "physics/mechanics/coupling_volumes.hpp"
@@ -77,7 +78,7 @@ class PartOf final : public Part {
   assembly::Assembler<Op> assembler_;
 };
 
-class Given final : public GivenPressure {
+class Given final : public GivenPressure, public assembly::Loads {
  public:
   Given(const mesh::Mesh& mesh, GivenPressureParameters parameters)
       : parameters_(std::move(parameters)),
@@ -187,7 +188,7 @@ void set_fluid_pressure(assembly::System& system, const std::vector<Real>& rock,
   const auto& mesh = system.mesh();
   GivenPressure* given = nullptr;
   for (const auto& module : system.modules())
-    if (auto* found = dynamic_cast<GivenPressure*>(module.get())) given = found;
+    if (auto* found = dynamic_cast<GivenPressure*>(module.module.get())) given = found;
   SPREKK_CHECK(given, "the pressure of a fluid is set, but the scene has no host_fluid whose pressure is given");
   base::collectively(*mesh.comm, [&] {
     const std::size_t n_cells = mesh.n_owned_cells, n_faces = mesh.n_owned_fracture_faces;

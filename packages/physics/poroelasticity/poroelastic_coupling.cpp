@@ -1,5 +1,6 @@
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 
+#include "assembly/capabilities.hpp"
 #include "assembly/geometry.hpp"
 #include "assembly/term.hpp"
 #include "mesh/extents.hpp"
@@ -48,7 +49,12 @@ struct Opening {
   }
 };
 
-class PoroelasticCoupling final : public assembly::Module {
+class PoroelasticCoupling final : public assembly::Module,
+                                  public assembly::InitialValues,
+                                  public assembly::Steps,
+                                  public assembly::Transfer,
+                                  public assembly::RowWeights,
+                                  public assembly::ArtificialStorage {
  public:
   PoroelasticCoupling(const mesh::Mesh& mesh, PoroelasticCouplingParameters parameters)
       : parameters_(std::move(parameters)),

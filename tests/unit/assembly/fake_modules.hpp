@@ -5,6 +5,7 @@
 #include <string>
 
 #include "assembly/assembler.hpp"
+#include "assembly/capabilities.hpp"
 #include "assembly/system.hpp"
 #include "mesh/distribute.hpp"
 #include "mesh/extents.hpp"
@@ -41,7 +42,7 @@ struct SpringCell {
 /// Linear module. Declares "displacement" with the scales E = 100 Pa and L = 2 m. The load on every node is `force` *
 /// t^power in direction x.
 template <Shape shape>
-class Springs final : public assembly::Module {
+class Springs final : public assembly::Module, public assembly::Loads {
  public:
   static constexpr int dim = mesh::dimension(shape);
   Real force = 0, power = 0;
@@ -122,7 +123,7 @@ struct GlueFace {
 
 /// Nonlinear module. Declares "glue" on fracture faces and reads "displacement". History: the last committed glue.
 template <Shape shape>
-class Glue final : public assembly::Module {
+class Glue final : public assembly::Module, public assembly::Steps, public assembly::Errors {
  public:
   static constexpr int dim = mesh::dimension(shape);
   Real wrong = 0;                 ///< error of the derivative in the displacement

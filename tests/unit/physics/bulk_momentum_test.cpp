@@ -191,14 +191,14 @@ TEST(BulkMomentum, TractionsAddUpToTheirIntegral) {
         EXPECT_NEAR(virtual_work(rock, 2, one), 3 * 2 * (1.5 + 1), 1e-12);
       }
     }
-    EXPECT_FALSE(rock.system->modules()[0]->constant_load());
+    EXPECT_FALSE(rock.system->modules()[0].has_constant_load());
     EXPECT_NEAR(rock.system->scales().at("stress"), 2 * 2 * 4, 2);  // the largest traction, at quadrature points
   }
 }
 
 TEST(BulkMomentum, UniformLoadsDoNotChange) {
   const auto rock = make_rock(mesh::make_box(plain_box("triangle", 0)), {}, {{base::Expression(1), text("x")}, {}});
-  EXPECT_TRUE(rock.system->modules()[0]->constant_load());
+  EXPECT_TRUE(rock.system->modules()[0].has_constant_load());
   rock.system->set_time(2, 1);
   rock.system->set_time(3, 1);
   EXPECT_NEAR(virtual_work(rock, 0, one), 6, 1e-13);
