@@ -30,6 +30,11 @@ struct BoundModule {
   /// Returns whether the residual at x = 0 is the same at all times.
   bool has_constant_load() const { return !loads || loads->constant_load(); }
   bool holds_bodies() const { return supporting && supporting->holds_bodies(); }
+  /// Returns the state with the histories of this module.
+  State at(State state) const {
+    state.history = history;
+    return state;
+  }
   /// Returns the name of a history variable of the module in the system.
   std::string history_name(const History& variable) const { return module->name() + ": " + variable.name; }
   fields::Field history_field(const History& variable) const {

@@ -1,32 +1,22 @@
 // Equation system of a list of modules. Blocks, sparsity, ghosts and storage follow from their declarations.
 #pragma once
 
-#include "assembly/bound_module.hpp"
-#include "assembly/constraints.hpp"
-#include "assembly/rates.hpp"
-#include "assembly/relaxation.hpp"
-#include "base/timer.hpp"
+#include "assembly/flux_lag.hpp"
+#include "assembly/ghosts.hpp"
+#include "assembly/jacobian.hpp"
+#include "assembly/rate_history.hpp"
+#include "assembly/reactions.hpp"
+#include "assembly/row_sizes.hpp"
+#include "assembly/scaling.hpp"
+#include "assembly/step_accuracy.hpp"
+#include "assembly/structure.hpp"
 #include "contact/contact.hpp"
-#include "fields/block_problem.hpp"
 
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
 namespace sprekk::assembly {
-
-/// Sum of the residuals of a field over the unknowns that a condition prescribes. For displacements: force of the
-/// supports on the body.
-struct Reaction {
-  std::string condition, field;
-  std::vector<Real> force;       ///< [component], in the unit of the rows, e.g. N (2D: N/m)
-  std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D only the last component, N
-  int region = -1;               ///< region of the condition; -1: on a boundary
-  Reactions called = {};
-};
-
-class RateErrors;
 
 class System : public fields::BlockProblem, private contact::Equations {
  public:
@@ -35,27 +25,26 @@ class System : public fields::BlockProblem, private contact::Equations {
   System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> modules,
          const std::vector<DirichletCondition>& conditions, RCP<base::Timers> timers,
          Rates::Scheme scheme = Rates::Scheme::implicit_euler);
-  ~System() override;
-  System(const System&) = delete;  // modules and stencils refer to members
-  System& operator=(const System&) = delete;
 
-  RCP<const Comm> comm() const override { return mesh_->comm; }
-  const std::vector<fields::Block>& blocks() const override { return blocks_; }
-  const std::vector<fields::LocalGroup>& local_groups() const override { return groups_; }
+  RCP<const Comm> comm() const override { return structure_.mesh->comm; }
+  const std::vector<fields::Block>& blocks() const override { return structure_.blocks; }
+  const std::vector<fields::LocalGroup>& local_groups() const override { return structure_.groups; }
   void set_time(Real t, Real dt) override;
   void commit(const fields::BlockVector& x) override;
   void residual(const fields::BlockVector& x, fields::BlockVector& r) override;
   void raw_residual(const fields::BlockVector& x, fields::BlockVector& r) override;
   void jacobian(const fields::BlockVector& x) override;
-  const fields::BlockMatrix& matrix() const override { return matrix_; }
-  std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J) override;
-  bool stores() const override { return coupled_; }
-  bool symmetric() const override { return symmetric_ && !coupled_; }
-  bool symmetric_blocks() const override { return symmetric_; }
-  ConstView<char*> constrained(int block) const override { return constraints_[block].mask(); }
+  const fields::BlockMatrix& matrix() const override { return jacobian_.matrix(); }
+  std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J) override {
+    return jacobian_.share(block, J);
+  }
+  bool stores() const override { return structure_.coupled; }
+  bool symmetric() const override { return jacobian_.symmetric() && !structure_.coupled; }
+  bool symmetric_blocks() const override { return jacobian_.symmetric(); }
+  ConstView<char*> constrained(int block) const override { return structure_.constraints[block].mask(); }
   std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) override;
   Real merit(const fields::BlockVector& x, const fields::BlockVector& r) override;
-  RCP<const fields::Vector> schur(int block) const override { return schur_[block]; }
+  RCP<const fields::Vector> schur(int block) const override { return row_sizes_->schur(block); }
   Real lag(Lag how, const fields::BlockVector& x) override;
   fields::Globalisation& globalisation() override;
 
@@ -70,7 +59,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// step, returns reactions(x). Collective.
   std::vector<Reaction> reactions_of_step(const fields::BlockVector& x);
   /// Returns the sums of any rows r over the unknowns of each condition. Collective.
-  std::vector<Reaction> sums_of_held(const fields::BlockVector& r) const;
+  std::vector<Reaction> sums_of_held(const fields::BlockVector& r) const { return sum_prescribed(structure_, r); }
   /// Returns the totals of all modules, summed over the ranks. Collective.
   std::vector<Total> totals(const fields::BlockVector& x);
 
@@ -98,36 +87,36 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Lets modules take over x and the histories of another system. Call before resume(). Collective.
   void take_over(const fields::BlockVector& x);
   /// Passes the unbalanced residual at x to the modules, after resume(). Collective.
-  void tell_unbalanced(const fields::BlockVector& x);
+  void pass_unbalanced(const fields::BlockVector& x);
 
   /// Enables step error estimates in each commit. Call at the initial state. Collective.
   void watch_errors(Real duration);
   /// Returns whether a module stores a quantity, so that the step length matters.
-  bool has_rates() const;
+  bool has_rates() const { return structure_.has_rates(); }
   /// Returns and clears the step errors since the last call or resume(): the largest error of each name.
-  fields::StepErrors take_errors() { return std::exchange(errors_, {}); }
+  fields::StepErrors take_errors() { return accuracy_ ? accuracy_->take() : fields::StepErrors(); }
   /// Returns the deviation of the loads at x from a linear path in the step of length dt to t. The deviation is
   /// relative to the largest change of the loads in a step so far. Changes the present time. Collective.
   Real bend_of_loads(const fields::BlockVector& x, Real t, Real dt);
   /// Restarts the rate errors, see RateErrors::forget.
-  void forget_rates(bool jump);
+  void forget_rates(bool jump) { accuracy_->forget(jump); }
 
   /// Returns the contact constraints, [owned fracture face]. Collective.
   std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
 
-  const mesh::Mesh& mesh() const { return *mesh_; }
-  const std::vector<BoundModule>& modules() const { return modules_; }
-  const std::vector<fields::Layout>& layouts() const { return layouts_; }
-  const Scales& scales() const { return scales_; }
+  const mesh::Mesh& mesh() const { return *structure_.mesh; }
+  const std::vector<BoundModule>& modules() const { return structure_.modules; }
+  const std::vector<fields::Layout>& layouts() const { return structure_.layouts; }
+  const Scales& scales() const { return scaling_.values(); }
   /// Returns whether a module reads ghosts of the block. Such blocks are exchanged once per residual.
-  bool exchanged(int block) const { return needs_ghosts_[block]; }
+  bool exchanged(int block) const { return structure_.exchanged[block]; }
   /// Returns a zero matrix with all declared blocks, as filled by jacobian(). Collective.
-  fields::BlockMatrix create_matrix() const;
+  fields::BlockMatrix create_matrix() const { return structure_.create_matrix(); }
   /// Computes the residual or Jacobian of one module, for comparison with finite differences. Collective.
   void module_residual(int module, const fields::BlockVector& x, fields::BlockVector& r);
   void module_jacobian(int module, const fields::BlockVector& x, fields::BlockMatrix& J);
 
-  const Rates& rates() const { return rates_; }
+  const Rates& rates() const { return rate_history_.rates(); }
   /// Returns the increase of the storage from x to x + dx for small dx, without the factor of the rates, minus
   /// artificially_stored(x). Collective.
   fields::BlockVector stored(const fields::BlockVector& x, const fields::BlockVector& dx);
@@ -135,86 +124,33 @@ class System : public fields::BlockProblem, private contact::Equations {
   fields::BlockVector artificially_stored(const fields::BlockVector& x);
 
  private:
-  Context context() const { return {mesh_, geometry_, layouts_, stencils_}; }
-  void declare_fields();
-  void declare_scales();
-  bool couples_balances() const;
-  std::vector<DirichletCondition> conditions_on(std::size_t block,
-                                                const std::vector<DirichletCondition>& conditions) const;
-  void set_multigrid(const Unknown& unknown, const fields::Layout& layout, fields::Block& block) const;
-  void declare_groups();
-  void bind_modules();
-  void create_matrices();
-  void assemble_linear();
-  void start_matrix();
-  void assemble_balances();
-  void set_merit_weights();
-  void find_exchanges();
-  std::vector<contact::Support> supports_of(int displacement) const;
-  void watch_contact();
-  State state(const BoundModule& module) const;
-  bool keeps_gains() const { return scheme_ != Rates::Scheme::implicit_euler; }
-  void declare_gains();
-  void find_gains();
-  void find_unbalanced(const fields::BlockVector& x);
-  void find_errors(const fields::BlockVector& x);
-  void resume_errors(const fields::BlockVector& x, const std::vector<Real>& memory);
+  State state() const;
+  State at(const fields::BlockVector& x, Ghosts::Which which = Ghosts::Which::read);
+  void residual_at(const State& state, fields::BlockVector& r);
+  void assemble(const BoundModule& module, const State& state, fields::BlockMatrix& J) const;
   fields::BlockVector loads(const fields::BlockVector& x, Real t, Real dt);
-  void refresh_ghosts(const fields::BlockVector& x, bool all);
-  Rows rows(fields::BlockVector& r) const;
-  Real rounding(const fields::BlockVector& x, const std::string& scale) const;
-  View<Real*> rounding_of_others(int b, const fields::BlockVector& x) const;
-  void update_scales(Real t);
-  void find_schur();
+  void watch_contact();
+  std::vector<contact::Support> supports_of(int displacement) const;
+  bool linear_part_is_invariant() const;
+  std::vector<contact::Grip> grips_at(const State& state) const;
   std::vector<contact::Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) override;
-  std::vector<contact::Grip> present_grips();
   std::vector<char> states(const fields::BlockVector& x) override;
   contact::Sizes sizes() const override;
-  void begin_anew() override { present_.clear(); }
-  bool linear_part_is_invariant() const;
+  void begin_anew() override { row_sizes_->begin_solve(); }
 
-  RCP<const mesh::Mesh> mesh_;
-  Geometry geometry_;
-  std::vector<BoundModule> modules_;
-  std::vector<Unknown> unknowns_;        // [block]
-  std::vector<fields::Layout> layouts_;  // [block]
-  std::shared_ptr<Stencils> stencils_;
-  std::vector<fields::Block> blocks_;
-  std::vector<fields::LocalGroup> groups_;
-  std::vector<Constraints> constraints_;  // [block]
-  std::vector<View<Real**>> gains_;  // [block](owned entity, component) storage increase of the last step, or empty
-  std::vector<char> needs_ghosts_;   // [block]
-  fields::BlockVector ghosted_;      // [block] unknowns with ghosts
-  fields::BlockVector weights_;      // [block] weights of merit(); null: 1/|diagonal|
-  fields::BlockVector diagonals_;    // [block] of linear_; coupled balances: of matrix_
-  fields::BlockVector present_;      // [block] diagonals of the last jacobian()
-  fields::BlockVector schur_;        // [block] Schur complements of the last jacobian(); null: none
-  fields::BlockVector at_end_;       // [block] residual at the end of the last step; empty: no storage or no step
-  fields::BlockVector unbalanced_;   // [block] at_end_, zero in rows of prescribed unknowns
-  fields::BlockVector load_;         // [block] residual of the linear modules at x = 0 and time t_
-  contact::Blocks contact_blocks_;   // without displacement if modules support bodies
+  Structure structure_;
+  Scaling scaling_;
+  RateHistory rate_history_;
+  Jacobian jacobian_;
+  Ghosts ghosts_;
+  FluxLag flux_lag_;
+  std::unique_ptr<RowSizes> row_sizes_;
+  std::unique_ptr<StepAccuracy> accuracy_;  // null: errors of steps are not estimated
+  fields::BlockVector load_;                // [block] residual of the linear modules at x = 0 and the present time
+  bool loaded_ = false;                     // load_ has been computed
+  Real extent_;                             // largest extent of the domain, m
+  contact::Blocks contact_blocks_;
   std::unique_ptr<contact::Contact> contact_;  // null without contact and floating blocks
-  fields::BlockMatrix linear_;                 // part of the linear modules
-  fields::BlockMatrix matrix_;                 // df/dx; shares the blocks of linear modules alone
-  std::vector<ScaleRelation> relations_;
-  Scales scales_;
-  ConstView<Real*> coefficients_;  // [local fracture face] of lag(); empty: computed from x
-  Relaxation lagged_;              // [local fracture face] logarithms of coefficients_
-  RCP<base::Timers> timers_;
-  std::unique_ptr<RateErrors> rate_errors_;  // null: errors of steps are not estimated
-  fields::BlockVector committed_x_;          // likewise
-  std::vector<Real> load_change_;  // likewise; [block] loads, then [block] prescribed values: largest change in a step
-  fields::StepErrors errors_;      // of the steps since take_errors()
-  Rates::Scheme scheme_;
-  Real extent_;  // largest extent of the domain, m
-  Rates rates_;
-  Real committed_t_ = 0, committed_dt_ = 0;  // last committed step; 0 before the first
-  Real t_ = 0, dt_ = 0;
-  bool symmetric_ = true, loaded_ = false;
-  bool coupled_ = false;       // balances and other rows depend on each other's fields
-  std::vector<char> carried_;  // [block] see Declaration::carries
-  bool changing_ = false;      // diagonals of balances are updated in each step
-  bool sized_ = false;         // diagonals_ of balances are those of this step's first Jacobian, with schur_
 };
 
 }  // namespace sprekk::assembly

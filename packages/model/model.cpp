@@ -183,7 +183,7 @@ void Model::change(const Scene& changed) {
   auto x = system->initial();
   system->prescribe(time_, x);  // for entities that did not exist before
   carry_over(*whole_mesh_, *system_, x_, *system, x);
-  system->tell_unbalanced(x);
+  system->pass_unbalanced(x);
   scene_ = std::move(scene);
   stepper_.reset();
   newton_.reset();
