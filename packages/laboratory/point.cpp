@@ -71,11 +71,13 @@ void PointPath::describe(base::Section& s) {
   if (!s.complete()) return;
   if (control.size() < 2 || control.size() > 3) s.fail("control", "needs 2 components (2D) or 3 (3D)");
   if (path.size() != control.size())
-    s.fail("path", fmt::format("has {} components, \"control\" has {}", path.size(), control.size()));
+    s.fail("path", fmt::format("number of components is {}, that of \"control\" is {}", path.size(), control.size()));
   if (!plastic_jump.empty() && plastic_jump.size() + 1 != control.size())
-    s.fail("plastic jump", fmt::format("has {} components, must have {}", plastic_jump.size(), control.size() - 1));
+    s.fail("plastic jump",
+           fmt::format("number of components is {}, must be {}", plastic_jump.size(), control.size() - 1));
   if (!initial_traction.empty() && initial_traction.size() != control.size())
-    s.fail("initial traction", fmt::format("has {} components, must have {}", initial_traction.size(), control.size()));
+    s.fail("initial traction",
+           fmt::format("number of components is {}, must be {}", initial_traction.size(), control.size()));
   for (std::size_t i = 0; i < control.size(); ++i) {
     if (control[i] != "jump" && control[i] != "traction" && control[i] != "column")
       s.fail("control", fmt::format("is \"{}\" for component {}, must be jump, traction or column", control[i], i));

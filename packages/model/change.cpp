@@ -87,8 +87,8 @@ void compare_places(const std::string& what, const std::map<std::string, Place>&
                     const std::map<std::string, Place>& after, std::vector<std::string>& lines) {
   for (const auto& [name, place] : after)
     if (const auto old = before.find(name); old != before.end() && !(old->second == place))
-      lines.push_back(fmt::format("the {} \"{}\": has {} numbers on each {}, had {} on each {}", what, name,
-                                  place.n_components, fields::name_of(place.entity), old->second.n_components,
+      lines.push_back(fmt::format("the {} \"{}\": number of values per {}: {}; before: {} per {}", what, name,
+                                  fields::name_of(place.entity), place.n_components, old->second.n_components,
                                   fields::name_of(old->second.entity)));
 }
 

@@ -99,14 +99,16 @@ std::vector<StagedScene> staged_scenes(const Scene& scene) {
     merge(stage.changes, list);
     for (const auto& region : stage.excavate) list.sublist("Regions").sublist(region).set("excavated", true);
     for (const auto& region : stage.backfill) {
-      auto& entries = list.sublist("Regions").sublist(region);
+      auto& regions = list.sublist("Regions");
+      auto& entries = regions.sublist(region);
       if (std::find(stage.excavate.begin(), stage.excavate.end(), region) != stage.excavate.end())
         errors.push_back(
             fmt::format("{}: \"backfill\": names \"{}\", and so does \"excavate\": take two stages", origin, region));
       if (!entries.isType<bool>("excavated") || !entries.get<bool>("excavated"))
         errors.push_back(
             fmt::format("{}: \"backfill\": names \"{}\", which is not excavated at this time", origin, region));
-      entries.set("excavated", false);
+      entries.remove("excavated", false);
+      if (entries.begin() == entries.end()) regions.remove(region);  // the material of Bulk
     }
     if (stage.release) {
       const std::array<Real, 2> times = {stage.time, stage.time + *stage.release};

@@ -183,8 +183,8 @@ TEST(Control, WrongEntriesAreNamed) {
     EXPECT_NE(message({override}).find(words), std::string::npos) << message({override});
   };
   expect("Point.control={column, push}", "\"push\"");
-  expect("Point.path={0}", "has 1 components");
-  expect("Point.plastic jump={0, 0}", "must have 1");
+  expect("Point.path={0}", "number of components is 1");
+  expect("Point.plastic jump={0, 0}", "must be 1");
   expect("Point.column normal stiffness=0", "missing; a column needs it");
   expect("Point.material=rock", "must be the name of a joint material");
   expect("Point.colunm normal stiffness=1", "Did you mean \"column normal stiffness\"?");
