@@ -1,6 +1,8 @@
 #include "solve/newton.hpp"
 
 #include <NOX.H>
+#include <NOX_Direction_UserDefinedFactory.H>
+#include <NOX_LineSearch_UserDefinedFactory.H>
 #include <NOX_StatusTest_Generic.H>
 #include <NOX_Thyra.H>
 
@@ -13,7 +15,8 @@
 #include "base/check.hpp"
 #include "base/parameters.hpp"
 #include "base/text.hpp"
-#include "solve/line_search.hpp"
+#include "solve/newton_step.hpp"
+#include "solve/thyra_model.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -26,9 +29,9 @@ constexpr int most_lagged = 60;  // steps with lagged coefficients
 /// finite, no progress, too many iterations, or stopped. Saves the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
-  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const SearchReport& search,
+  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const NewtonStep::Report& step,
               NewtonReport& report)
-      : problem_(problem), options_(options), picard_(picard), search_(search), report_(report) {}
+      : problem_(problem), options_(options), picard_(picard), step_(step), report_(report) {}
 
   StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const auto& group = solver.getSolutionGroup();
@@ -51,7 +54,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
                report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
-    } else if (search_.stagnant) {
+    } else if (step_.stagnant) {
       fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
     } else if (base::any_rank(*problem_.comm(), options_.should_stop)) {
@@ -77,49 +80,57 @@ class MeasureTest : public NOX::StatusTest::Generic {
   BlockProblem& problem_;
   const NewtonOptions& options_;
   const Picard& picard_;
-  const SearchReport& search_;
+  const NewtonStep::Report& step_;
   NewtonReport& report_;
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
-RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, BlockProblem& problem, const ThyraModel& model,
-                                           Picard& picard, SearchReport& found) {
+/// Provides the direction and the line search to NOX.
+class StepFactory : public NOX::Direction::UserDefinedFactory, public NOX::LineSearch::UserDefinedFactory {
+ public:
+  explicit StepFactory(const RCP<NewtonStep>& step) : step_(step) {}
+  RCP<NOX::Direction::Generic> buildDirection(const RCP<NOX::GlobalData>&, Teuchos::ParameterList&) const override {
+    return step_;
+  }
+  RCP<NOX::LineSearch::Generic> buildLineSearch(const RCP<NOX::GlobalData>&, Teuchos::ParameterList&) const override {
+    return step_;
+  }
+
+ private:
+  RCP<NewtonStep> step_;
+};
+
+RCP<Teuchos::ParameterList> nox_parameters(const NewtonOptions& options, const RCP<NewtonStep>& step, int rank) {
   const auto list = Teuchos::parameterList("NOX");
   list->set("Nonlinear Solver", "Line Search Based");
-  list->sublist("Direction").set("Method", "Newton");
-  auto& newton = list->sublist("Direction").sublist("Newton");
-  newton.set("Forcing Term Method", "Constant");
-  newton.set("Rescue Bad Newton Solve", true);  // the line search rejects it and reports the reason
-  newton.sublist("Linear Solver").set("Tolerance", options.linear_solver.tolerance);
+  const auto factory = rcp(new StepFactory(step));
+  auto& direction = list->sublist("Direction");
+  direction.set("Method", "User Defined");
+  direction.set<RCP<NOX::Direction::UserDefinedFactory>>("User Defined Direction Factory", factory);
   auto& search = list->sublist("Line Search");
   search.set("Method", "User Defined");
-  const RCP<NOX::LineSearch::UserDefinedFactory> factory = rcp(new LineSearchFactory(problem, model, picard, found));
-  search.set("User Defined Line Search Factory", factory);
+  search.set<RCP<NOX::LineSearch::UserDefinedFactory>>("User Defined Line Search Factory", factory);
   const int shown = NOX::Utils::OuterIteration + NOX::Utils::OuterIterationStatusTest + NOX::Utils::Error;
   auto& printing = list->sublist("Printing");
   printing.set("Output Information", options.print ? shown : 0);
-  printing.set("MyPID", problem.comm()->getRank());
+  printing.set("MyPID", rank);
   printing.set("Output Processor", options.print ? 0 : -1);  // NOX would print failed line searches in any case
   list->setParameters(options.nox);
   return list;
 }
 
-/// Reports NOX entries for methods other than Newton's, and entries that should be sections.
+/// Reports NOX entries for other methods, and entries that should be sections.
 void check_methods(base::Section& section, const Teuchos::ParameterList& nox) {
-  const auto check = [&](const Teuchos::ParameterList& list, const std::string& place, const char* name,
-                         const char* allowed) {
-    const auto* entry = list.getEntryPtr(name);
-    if (entry && !(entry->isType<std::string>() && Teuchos::getValue<std::string>(*entry) == allowed))
-      section.fail_inside(
-          fmt::format("{} > \"{}\": is {}, must be \"{}\"", place, name, base::describe(*entry), allowed));
-  };
-  check(nox, "NOX", "Nonlinear Solver", "Line Search Based");
-  for (const char* name : {"Direction", "Line Search", "Printing"})
-    if (const auto* entry = nox.getEntryPtr(name); entry && !entry->isList())
-      section.fail_inside(fmt::format("NOX > \"{}\": is {}, must be a section", name, base::describe(*entry)));
-  if (nox.isSublist("Direction")) check(nox.sublist("Direction"), "NOX > Direction", "Method", "Newton");
-  if (nox.isSublist("Line Search") && nox.sublist("Line Search").isParameter("Method"))
-    section.fail_inside("NOX > Line Search > \"Method\": must be absent: Sprekk has its own line search");
+  constexpr char solver[] = "Line Search Based";
+  if (const auto* entry = nox.getEntryPtr("Nonlinear Solver");
+      entry && !(entry->isType<std::string>() && Teuchos::getValue<std::string>(*entry) == solver))
+    section.fail_inside(
+        fmt::format("NOX > \"Nonlinear Solver\": is {}, must be \"{}\"", base::describe(*entry), solver));
+  for (const char* name : {"Direction", "Line Search"})
+    if (nox.getEntryPtr(name))
+      section.fail_inside(fmt::format("NOX > \"{}\": must be absent: Sprekk computes direction and step length", name));
+  if (const auto* entry = nox.getEntryPtr("Printing"); entry && !entry->isList())
+    section.fail_inside(fmt::format("NOX > \"Printing\": is {}, must be a section", base::describe(*entry)));
 }
 
 constexpr char nox_place[] = "Sprekk > Solver > NOX";
@@ -135,20 +146,28 @@ Error refused(const std::string& text) {
 }
 
 /// Throws an Error with an entry of `given` that NOX has not read. NOX has no list of its parameters, but marks those
-/// it has read. Parameters read during a solve can be checked only `after` a solve.
-void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path,
-                   bool after) {
+/// it has read.
+void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::ParameterList& read, const std::string& path) {
   for (const auto& item : given) {
     const auto& entry = read.getEntry(item.first);
     if (entry.isList()) {
-      if (after || item.first != "Linear Solver")
-        refuse_unread(given.sublist(item.first), read.sublist(item.first), path + " > " + item.first, after);
+      refuse_unread(given.sublist(item.first), read.sublist(item.first), path + " > " + item.first);
       continue;
     }
     SPREKK_CHECK(entry.isUsed(),
                  "{} > \"{}\": NOX does not read this parameter here; see its manual for its parameters", path,
                  item.first);
   }
+}
+
+/// Returns the group at x without a Jacobian. The model must outlive it.
+RCP<NOX::Abstract::Group> group_of(const ThyraModel& model, const BlockVector& x) {
+  const RCP<Thyra::LinearOpBase<Real>> jacobian;
+  const RCP<const Thyra::LinearOpWithSolveFactoryBase<Real>> solver;
+  const RCP<Thyra::PreconditionerBase<Real>> preconditioner;
+  const RCP<Thyra::PreconditionerFactoryBase<Real>> preconditioners;
+  return rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model.make_vector(x)), Teuchos::rcpFromRef(model), jacobian,
+                                   solver, preconditioner, preconditioners));
 }
 
 /// Solves, and converts exceptions of NOX, including plain text, to an Error.
@@ -161,7 +180,7 @@ StatusType solve_by(RCP<NOX::Solver::Generic>& solver, const RCP<NOX::Abstract::
     } catch (const std::logic_error& error) {
       throw refused(error.what());
     }
-    refuse_unread(given, *parameters, nox_place, false);
+    refuse_unread(given, *parameters, nox_place);
     return solver->solve();
   } catch (const char* text) {
     throw refused(text);
@@ -207,21 +226,21 @@ Newton::Newton(BlockProblem& problem, const NewtonOptions& options, RCP<base::Ti
       options_(options),
       linear_(std::make_unique<CondensedSolve>(problem, stopping(options.linear_solver, options.should_stop, solving_),
                                                timers)),
-      model_(std::make_unique<ThyraModel>(problem, *linear_)) {}
+      forced_(std::make_unique<ForcedSolve>(problem, *linear_)),
+      model_(std::make_unique<ThyraModel>(problem)) {}
 
 Newton::~Newton() = default;
 
 NewtonReport Newton::solve(BlockVector& x) {
   NewtonReport report;
-  model_->start(options_.tolerance);
+  forced_->start(options_.tolerance);
   problem_.globalisation().damp(0, {});
-  // NOX requires an RCP; the model outlives the solver
-  const RCP<const Thyra::ModelEvaluator<Real>> model = Teuchos::rcpFromRef(*model_);
-  const RCP<NOX::Abstract::Group> group = rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model_->make_vector(x)), model));
-  SearchReport search;
+  const auto group = group_of(*model_, x);
   std::optional<Picard> picard(std::in_place, problem_, x);
-  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *picard, search, report));
-  const auto parameters = nox_parameters(options_, problem_, *model_, *picard, search);
+  const auto step = rcp(new NewtonStep(problem_, *forced_, *picard));
+  const auto& found = step->report();
+  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *picard, found, report));
+  const auto parameters = nox_parameters(options_, step, problem_.comm()->getRank());
   RCP<NOX::Solver::Generic> solver;
   try {
     const While solving(solving_);
@@ -231,14 +250,13 @@ NewtonReport Newton::solve(BlockVector& x) {
     report.reason = "interrupted";
   }
   picard.reset();
-  report.linear_solves = model_->linear_history();
+  report.linear_solves = found.linear_solves;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.stopped) return report;
-  refuse_unread(options_.nox, *parameters, nox_place, true);
   fields::copy(solution_of(solver->getSolutionGroup()), x);
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   if (report.iterations > 0) {
-    const bool damped = base::on_any_rank(*problem_.comm(), search.damped);
+    const bool damped = base::on_any_rank(*problem_.comm(), found.damped);
     factors_ = damped ? Factors::damped : Factors::good;
     if (report.converged && damped) {  // before the commit, after which sliding faces would stick
       problem_.globalisation().damp(0, {});
@@ -246,12 +264,12 @@ NewtonReport Newton::solve(BlockVector& x) {
       factors_ = Factors::old;
     }
   }
-  if (!search.failure.empty()) report.reason = search.failure;
+  if (!found.failure.empty()) report.reason = found.failure;
   if (report.iterations > 0 && !report.linear_solves.back().converged)
     report.reason = report.linear_solves.back().reason;
   if (!report.converged && report.reason.empty()) report.reason = "NOX gave up";
-  report.loose = search.loose;
-  for (int change : search.last_change) report.unsettled.push_back(change > 0 && change + 5 > search.n_accepted);
+  report.loose = found.loose;
+  report.unsettled = step->iterates().changed_lately();
   return report;
 }
 

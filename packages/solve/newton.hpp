@@ -16,6 +16,7 @@ using fields::BlockVector;
 using fields::Measure;
 
 class CondensedSolve;
+class ForcedSolve;
 class ThyraModel;
 
 struct NewtonOptions {
@@ -67,6 +68,7 @@ class Newton {
   NewtonOptions options_;
   bool solving_ = false;  // linear solves may be stopped
   std::unique_ptr<CondensedSolve> linear_;
+  std::unique_ptr<ForcedSolve> forced_;
   std::unique_ptr<ThyraModel> model_;
   /// Factors for answer(): of the last Jacobian, older than the matrix, or damped.
   enum class Factors { good, old, damped } factors_ = Factors::good;

@@ -6,7 +6,7 @@
 #include "base/parameters.hpp"
 #include "dense.hpp"
 #include "solve/condensed_solve.hpp"
-#include "solve/thyra_model.hpp"
+#include "solve/forced_solve.hpp"
 #include "solve/time_stepping.hpp"
 
 namespace sprekk::test {
@@ -203,10 +203,10 @@ TEST(NewtonOptions, AreReadFromParameters) {
   EXPECT_THROW(base::read<NewtonOptions>(list, "scene.xml", "Newton"), Error);
 }
 
-TEST(ThyraModel, AppliesTheJacobianOfTheResidual) {
+TEST(ForcedSolve, AppliesTheJacobianOfTheResidual) {
   GridProblem problem(Tpetra::getDefaultComm(), {});
   solve::CondensedSolve linear(problem, {});
-  const solve::ThyraModel model(problem, linear);
+  solve::ForcedSolve forced(problem, linear);
   auto x = problem.zero(), dx = problem.zero();
   for (auto* v : {&x, &dx}) {
     std::vector<Real> values(gather(*v).size());
@@ -214,25 +214,15 @@ TEST(ThyraModel, AppliesTheJacobianOfTheResidual) {
     scatter(values, *v);
   }
   const auto f_of = [&](Real h) {
-    auto y = problem.zero();
+    auto y = problem.zero(), f = problem.zero();
     for (std::size_t b = 0; b < y.size(); ++b) y[b]->update(1, *x[b], h, *dx[b], 0);
-    auto in = model.createInArgs();
-    auto out = model.createOutArgs();
-    const auto f = Thyra::createMember(model.get_f_space());
-    in.set_x(model.make_vector(y));
-    out.set_f(Thyra::ModelEvaluatorBase::Evaluation<Thyra::VectorBase<Real>>(f));
-    model.evalModel(in, out);
-    return gather(solve::blocks_of(*f));
+    problem.residual(y, f);
+    return gather(f);
   };
-  const auto w = model.create_W_op();
-  auto in = model.createInArgs();
-  auto out = model.createOutArgs();
-  in.set_x(model.make_vector(x));
-  out.set_W_op(w);
-  model.evalModel(in, out);
-  const auto y = Thyra::createMember(model.get_f_space());
-  Thyra::apply(*w, Thyra::NOTRANS, *model.make_vector(dx), y.ptr());
-  const auto product = gather(solve::blocks_of(*y)), plus = f_of(1e-6), minus = f_of(-1e-6);
+  auto y = problem.zero();
+  forced.jacobian(x);
+  forced.apply(dx, y);
+  const auto product = gather(y), plus = f_of(1e-6), minus = f_of(-1e-6);
   for (std::size_t i = 0; i < product.size(); ++i) EXPECT_NEAR(product[i], (plus[i] - minus[i]) / 2e-6, 1e-7);
 }
 

@@ -1,0 +1,111 @@
+// Step of Newton's method: direction and length, for NOX. The search is non-monotone, since kinks in f may raise the
+// merit on the way to a solution.
+#pragma once
+
+#include <NOX_Direction_Generic.H>
+#include <NOX_LineSearch_Generic.H>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solve/forced_solve.hpp"
+#include "solve/iterates.hpp"
+#include "solve/picard.hpp"
+
+namespace sprekk::solve {
+
+/// Step of Newton's method. The direction is the solution of the linear system. The step length is found by these
+/// rules:
+/// - The first step is full. Later steps take the first a = 1, 1/2, ..., 1/64 with merit <= (1 - 1e-3 a) limit, see
+///   Iterates::limit().
+/// - If no a is accepted, the direction is computed again with damping 0.1, 1, 10.
+/// - If damping fails, but the full first step leads to other contact states, this step is taken and the search
+///   restarts. There are at most three such restarts per solve. The search also restarts after calibrate() changed f.
+/// - Before a step is tried, its share of free motions is balanced, see Globalisation::balance().
+/// - Entities with alternating states are damped by Iterates::swinging() in the next step.
+/// - Coefficients of fluxes that depend on x: Picard decides when steps are searched and which are rejected.
+/// - Joints that weaken with slip: once a full step with lagged coefficients increases the merit of the lagged problem,
+///   later steps are searched for a decrease of this merit. The first step of a Picard phase is not searched. The
+///   coefficients remain frozen until the merit has decreased to a tenth.
+/// Refers to its arguments. All members are collective.
+class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Generic {
+ public:
+  struct Report {
+    std::vector<LinearReport> linear_solves;
+    std::string failure;  ///< reason for a missing step
+    std::string loose;    ///< floating bodies in the last iterate that had some, as text
+    /// Stagnation of the iteration, see Iterates. With frozen coefficients, also: four steps did not halve the merit.
+    bool stagnant = false;
+    bool damped = false;  ///< the last Jacobian of a linear solve was damped or lagged, on this rank
+  };
+
+  NewtonStep(BlockProblem& problem, ForcedSolve& linear, Picard& picard)
+      : problem_(problem), globalisation_(problem.globalisation()), linear_(linear), picard_(picard) {}
+
+  /// Computes the direction at the iterate of the group. A failed linear solve is in the report; then compute() below
+  /// repeats it with damping.
+  bool compute(NOX::Abstract::Vector& direction, NOX::Abstract::Group& group,
+               const NOX::Solver::Generic& solver) override;
+  /// Finds the step. Fails with length 0 if the linear solve failed, if no step is acceptable, or if a body has met no
+  /// resistance in four steps of a solve. The report contains the reason, except for a failed linear solve.
+  bool compute(NOX::Abstract::Group& group, double& length, const NOX::Abstract::Vector& direction,
+               const NOX::Solver::Generic& solver) override;
+  bool reset(const RCP<NOX::GlobalData>&, Teuchos::ParameterList&) override { return true; }
+
+  const Report& report() const { return report_; }
+  const Iterates& iterates() const { return iterates_; }
+
+ private:
+  struct Attempt {
+    NOX::Abstract::Group& group;       ///< the last trial
+    const NOX::Abstract::Group& from;  ///< the last iterate
+    RCP<NOX::Abstract::Vector> dx;
+    bool solved;                            ///< the linear system of dx was solved
+    RCP<NOX::Abstract::Vector> first = {};  ///< the balanced direction without further damping; null: not solved
+  };
+  struct Trial {
+    Real length, merit;
+  };
+  using Found = std::optional<Trial>;
+
+  // the steps, in this order
+  bool linearize(const NOX::Abstract::Group& group, NOX::Abstract::Vector& dx);
+  bool balance(Attempt& attempt);
+  Found attempt(const Attempt& attempt);
+  Found damp(Attempt& attempt);
+  Found step_with_lag(const Attempt& attempt);
+  bool return_to_lag(const Attempt& attempt);
+  Found enter_other_states(const Attempt& attempt);
+  bool reject(const Attempt& attempt, Trial& taken);
+  void accept(NOX::Abstract::Group& group, const Trial& taken);
+
+  Found try_direction(const Attempt& attempt) const;
+  Found search(const Attempt& attempt, const NOX::Abstract::Vector& dx) const;
+  Found full(const Attempt& attempt, const NOX::Abstract::Vector& dx) const;
+  Real merit(NOX::Abstract::Group& group) const;
+  Real merit_of_changed_f(NOX::Abstract::Group& group) const;
+  bool searches() const { return !picard_.lags() || (struggles_ && !picard_.fresh()); }
+  bool begins_to_struggle(const Trial& taken);
+  bool freeze(const Trial& taken);
+  bool is_stagnant() const;
+
+  BlockProblem& problem_;
+  fields::Globalisation& globalisation_;
+  ForcedSolve& linear_;
+  Picard& picard_;
+  Report report_;
+  Iterates iterates_;
+  Real damping_ = 0;
+  int n_unbalanced_ = 0;    // steps in which a body met no resistance
+  int n_restarts_ = 0;      // restarts of the search without an acceptable step
+  int n_frozen_ = 0;        // successive steps with frozen coefficients
+  bool weakens_ = false;    // see Globalisation::weakens()
+  bool struggles_ = false;  // a full step with lagged coefficients increased the merit
+};
+
+/// Return the unknowns or the residual of a NOX group over Thyra, without copying. The result is read-only.
+BlockVector solution_of(const NOX::Abstract::Group& group);
+BlockVector residual_of(const NOX::Abstract::Group& group);
+
+}  // namespace sprekk::solve
