@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Errors that were asked for, that runs say they reached, and that they have; beside uniform meshes of order 1 and 2."""
+"""Error control: target, estimated and true errors, compared with uniform meshes of order 1 and 2."""
 import argparse
 import csv
 import json
@@ -295,7 +295,7 @@ def draw(measured, file):
 
 def main():
     parser = argparse.ArgumentParser(prog="./sprekk perf accuracy", description=__doc__)
-    parser.add_argument("--only", action="append", help="cases whose names begin so; may be repeated")
+    parser.add_argument("--only", action="append", help="cases whose names begin with this text; may be repeated")
     parser.add_argument("--quick", action="store_true", help="two coarse meshes, 10 %% and 1 %%, of three cases")
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=300, help="limit of an adaptive run")

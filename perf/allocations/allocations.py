@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""What the program allocates in a step: at the beginning of a run, and after a thousand steps.
+"""Memory allocations in a step, at the beginning of a run and after a thousand steps.
 
-A run of N steps less one of N - 2 steps is what two steps allocate, there and back of a cycle; counter.cpp counts."""
+The difference between runs of N and N - 2 steps gives the allocations of two steps, one load cycle. counter.cpp counts
+them."""
 import json
 import os
 import subprocess
@@ -51,7 +52,7 @@ def of_step(options, sets, step):
 
 def main(words):
     parser = linear.parser("allocations", __doc__)
-    parser.add_argument("--counter", type=Path, default=ROOT / "build/perf/allocations/liballocations.so", help="what counter.cpp became")
+    parser.add_argument("--counter", type=Path, default=ROOT / "build/perf/allocations/liballocations.so", help="the compiled counter.cpp")
     options = parser.parse_args(words)
     chosen = linear.matching(options, SERIES)
     options.output.mkdir(parents=True, exist_ok=True)

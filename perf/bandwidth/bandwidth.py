@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What the parts of a Newton step cost, in products of the displacement matrix with a vector, and how much of the memory's bandwidth they use.
+"""Costs of the parts of a Newton step, in products of the displacement matrix with a vector, and their share of the memory bandwidth.
 
-The scene is a network of fractures in all states; bandwidth.cpp does the timing."""
+The scene is a network with open, sticking and sliding fractures. bandwidth.cpp measures the times."""
 import json
 import sys
 
@@ -120,7 +120,7 @@ def main(words):
     table.write(options.output / "bandwidth.csv")
     draw(measured, options.output / "bandwidth.png")
     worst = {key: (min if key == "triad" or ASKED[key][0] > 0 else max)(one.summary()[key] for one in measured.values()) for key in ("triad", *ASKED)}
-    missed = [f"missed: {key} = {worst[key]:.3g}, asked is {asked(key)}" for key, (sign, bound) in ASKED.items() if sign * worst[key] < sign * bound]
+    missed = [f"missed: {key} = {worst[key]:.3g}, required: {asked(key)}" for key, (sign, bound) in ASKED.items() if sign * worst[key] < sign * bound]
     print("\n".join(["", *missed, f"bandwidth.csv and bandwidth.png in {options.output}"]))
     print(" ".join(f"{key}={format(value, FORMATS.get(key, '.0f'))}" for key, value in worst.items()))
     return 1 if worst["assemblies"] > ASKED["assemblies"][1] else 0

@@ -129,7 +129,7 @@ def main(words):
     draw(all_rows, options.output / "bulk.png")
     print("\n".join(["", *wrong, f"bulk.csv and bulk.png in {options.output}"]))
     if min(ratios) < ASKED:
-        print(f"missed: ratio = {min(ratios):.2f}, asked is {ASKED}")
+        print(f"missed: ratio = {min(ratios):.2f}, required: {ASKED}")
     print(f"ratio={min(ratios):.2f}")
     return 1 if wrong else 0
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Robustness of the contact solver: runs scenes one after the other and prints a table.
 
-A step is one that the scene asks for; its Newton iterations are those of all its substeps, rejected ones too."""
+Steps are those of the scene. The Newton iterations of a step include those of all substeps, also of rejected ones."""
 import argparse
 import csv
 import re
@@ -181,7 +181,7 @@ def bar_chart(runs, file, most=40):
 
 def arguments(words):
     parser = argparse.ArgumentParser(prog="sprekk perf contact", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="a third of the scenes; the status is 1 above a stated bound, too, without --only")
+    parser.add_argument("--quick", action="store_true", help="a third of the scenes; without --only the status is also 1 above a stated bound")
     parser.add_argument("--ranks", type=linear.count, default=1, metavar="N", help="also run on N ranks, and compare the states")
     drawn_runs.add_options(parser)
     linear.add_only(parser, "scenes")

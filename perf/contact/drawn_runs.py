@@ -31,8 +31,8 @@ class Outcome:
 
 def add_options(parser):
     parser.add_argument("--random", type=linear.count, metavar="N", help="N scenes drawn at random; scene k depends on the seed and on k alone")
-    parser.add_argument("--seed", type=int, default=1, help="of these")
-    parser.add_argument("--jobs", type=linear.count, default=2, metavar="J", help="of these, run J at a time")
+    parser.add_argument("--seed", type=int, default=1, help="seed of these scenes")
+    parser.add_argument("--jobs", type=linear.count, default=2, metavar="J", help="number of these scenes that run at the same time")
 
 
 def keep_or_remove(output, scene, results, wrong):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Krylov iterations at extremes: stiffness of rock and joints, friction, Poisson's ratio, shape of cells.
+"""Krylov iterations at extreme values: stiffness of rock and joints, friction, Poisson's ratio, shape of cells.
 
 Every linear solve goes from zero to a relative residual of 1e-8."""
 import re

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Robustness of flow, heat and the rock that they deform: runs scenes drawn at random, and checks what they wrote."""
+"""Robustness of coupled flow, heat and deformation: runs scenes drawn at random, and checks their results."""
 import argparse
 import re
 import shutil
@@ -188,8 +188,8 @@ def arguments(words):
     parser = argparse.ArgumentParser(prog="sprekk perf coupled", description=__doc__)
     drawn_runs.add_options(parser)
     parser.set_defaults(random=100)
-    parser.add_argument("--all-ways", action="store_true", help="run each scene in all other ways, too: on ranks, from a checkpoint, renamed, ...")
-    parser.add_argument("--trace", action="store_true", help="with --jobs 1: end at an error of the checks themselves")
+    parser.add_argument("--all-ways", action="store_true", help="also run each scene in all other ways: on several ranks, from a checkpoint, renamed, ...")
+    parser.add_argument("--trace", action="store_true", help="with --jobs 1: stop at an internal error of the checks")
     linear.add_only(parser, "scenes")
     parser.add_argument("--output", type=Path, default=Path("output/perf/coupled"), metavar="DIR")
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")

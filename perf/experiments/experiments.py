@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Measured joints beside Sprekk's: laws are fitted to a part of an experiment and predict the rest.
+"""Measured and computed joints: laws are fitted to a part of an experiment and predict the remaining part.
 
 Injection-shear tests of Ye and Ghassemi (2018), specimens SW-S4 (saw cut) and SW-T2 (tensile fracture): the pressure rises
-in six stages and falls in five. One set of parameters per specimen is fitted to the rising stages, at a point that a
-column, specimen and machine, shears under the effective compression of the table; the falling ones are predicted. Then the
-same numbers are those of a specimen of poroelastic rock, into whose fracture water is injected: all stages are computed.
+in six stages and falls in five. One set of parameters per specimen is fitted to the rising stages with the point driver: a
+column of specimen and machine shears the joint under the measured effective compression. The falling stages are predicted.
+All stages are then computed with the same parameters for a specimen of poroelastic rock with injection into its fracture.
 
-The GREAT cell: strains in a sample under the loads of 16 pads, beside those that another team has computed."""
+The GREAT cell: strains in a sample under the loads of 16 pads, compared with those computed by another team."""
 import argparse
 import csv
 import importlib.util

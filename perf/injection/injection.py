@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Injection that opens joints: Newton iterations and cuts where water is pressed into a network of joints, at rates up to and above what keeps them closed.
+"""Injection that opens joints: Newton iterations and step reductions of injection into a network, at rates below and above the opening of joints.
 
-A step is one that the scene asks for; its Newton iterations are those of all its substeps, rejected ones too."""
+Steps are those of the scene. The Newton iterations of a step include those of all substeps, also of rejected ones."""
 import argparse
 import sys
 from dataclasses import dataclass
@@ -69,9 +69,9 @@ def asked(run, steps):
     """Yields messages of missed targets other than failures."""
     cuts = sum(step["cuts"] for step in run.steps)
     if cuts > CUTS * steps:
-        yield f"{cuts} cuts in {steps} steps, asked is one in ten at most"
+        yield f"{cuts} cuts in {steps} steps, required: at most one in ten"
     if max(run.newton, default=0) > MOST:
-        yield f"{max(run.newton)} Newton iterations in a step, asked are {MOST}"
+        yield f"{max(run.newton)} Newton iterations in a step, at most {MOST} required"
 
 
 def opened(run):
@@ -90,7 +90,7 @@ def row(case, solver, steps, run):
 
 def arguments(words):
     parser = argparse.ArgumentParser(prog="sprekk perf injection", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="four runs of ten steps; the status is 1 above a stated bound, too")
+    parser.add_argument("--quick", action="store_true", help="four runs of ten steps; the status is also 1 above a stated bound")
     linear.add_only(parser, "scenes")
     parser.add_argument("--output", type=Path, default=Path("output/perf/injection"), metavar="DIR")
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
@@ -119,7 +119,7 @@ def main(words):
              "cuts": sum(step["cuts"] for run in runs for step in run.steps)}
     print(f"\n{len({case.name for case, *_ in chosen})} scenes, {len(runs)} runs, {len(newton)} steps in {sum(run.seconds for run in runs):.0f} s; injection.csv in {options.output}")
     for what in beyond:
-        print("not as asked:", what)
+        print("requirement not met:", what)
     above = linear.missed(total, QUICK) if options.quick and not options.only else []
     for what in above:
         print(what)

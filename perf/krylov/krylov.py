@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Krylov and Newton iterations from ten thousand to a million unknowns: a network of fractures in all states, of hexahedra and of tetrahedra.
+"""Krylov and Newton iterations from ten thousand to a million unknowns: a network with open, sticking and sliding fractures, of hexahedra and of tetrahedra.
 
-Every linear solve goes from zero to a relative residual of 1e-8. --against MueLu runs each scene a second time, with MueLu in place of Sprekk's own
-multigrid, and says how many times as much that takes."""
+Every linear solve goes from zero to a relative residual of 1e-8. --against MueLu also runs each scene with MueLu in place of Sprekk's own multigrid,
+and prints the ratios of the costs."""
 import math
 import re
 import sys

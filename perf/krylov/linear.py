@@ -205,7 +205,7 @@ def parser(name, text, program=False, only=True):
     made.add_argument("--set", metavar="PATH=VALUE", action="append", default=[], help="an entry of every scene, as for `sprekk run`; may be repeated")
     made.add_argument("--output", type=Path, default=Path(f"output/perf/{name}"), metavar="DIR")
     if program:
-        made.add_argument("--program", type=Path, default=ROOT / f"build/perf/{name}/{name}", help=f"what {name}.cpp became")
+        made.add_argument("--program", type=Path, default=ROOT / f"build/perf/{name}/{name}", help=f"the compiled {name}.cpp")
     else:
         made.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
     return made

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Laws of joints on fracture networks: does Newton's method find each step with every law, does the state obey that law, and
-what does the law cost beside Coulomb's? For anisotropic damage also: does a step cost more after ten thousand?"""
+"""Laws of joints on fracture networks: convergence of Newton's method with every law, agreement of the state with the law, and
+cost of the law compared with Coulomb friction. For anisotropic damage also: cost of a step after ten thousand steps."""
 import importlib.util
 import shutil
 import sys
@@ -115,7 +115,7 @@ def growth(options):
 
 def main(arguments):
     parser = linear.parser("laws", __doc__)
-    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/laws/laws", help="what laws.cpp became")
+    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/laws/laws", help="the compiled laws.cpp")
     options = parser.parse_args(arguments)
     options.output = options.output.resolve()
     network_runs.TIME_LIMIT = TIME_LIMIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Seconds and memory for meshes that one rank makes and sends out, and for the same meshes refined by all ranks.
+"""Seconds and memory for meshes that one rank generates and distributes, and for the same meshes refined by all ranks.
 
-meshing.cpp makes the mesh of a scene and nothing else."""
+meshing.cpp only generates the mesh of a scene."""
 import sys
 
 from pathlib import Path
@@ -33,7 +33,7 @@ def row(name, found):
 def main(words):
     parser = linear.parser("meshing", __doc__, program=True)
     parser.add_argument("--edge", type=linear.count, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
-    parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="ranks of the rows on several (2)")
+    parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="ranks of the rows on several ranks (2)")
     options = parser.parse_args(words)
     edge = options.edge or (QUICK if options.quick else EDGE)
     rows = {f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once"): (refinements, ranks)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Contact on fracture networks: compressed, then sheared in ten steps with friction, tangential stiffness, dilation and
-closure. Does Newton's method find each step, on any number of ranks alike, and are forces, moments and energy in balance?"""
+closure. Checks the convergence of Newton's method, equal results on any number of ranks, and the balances of forces,
+moments and energy."""
 import argparse
 import json
 import sys
@@ -151,8 +152,8 @@ def main(arguments):
     parser = linear.parser("networks", __doc__)
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="also run on N ranks, and compare (2)")
-    parser.add_argument("--scale", action="store_true", help="instead: networks of 50 to 2000 fractures, what an unknown costs, beside blocks")
-    parser.add_argument("--seed", type=int, default=1, help="of --scale")
+    parser.add_argument("--scale", action="store_true", help="instead: cost per unknown of networks of 50 to 2000 fractures, compared with blocks")
+    parser.add_argument("--seed", type=int, default=1, help="seed of --scale")
     options = parser.parse_args(arguments)
     options.output = options.output.resolve()
     if options.scale:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sprekk beside PorePy: seconds, memory and Newton iterations on the same meshes, and seconds for the same error.
+"""Sprekk compared with PorePy: seconds, memory and Newton iterations on the same meshes, and seconds for the same error.
 
 The environment variable POREPY names a checkout of PorePy; without it nothing is measured."""
 import csv
@@ -279,7 +279,7 @@ def main(words):
         print("\ndamage at a point: the largest differences over the largest values, and seconds of an iteration of PorePy")
         wrong += damage.compare(options, theirs)
     write(options.output / "peer.csv", same, found)
-    missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, asked are {asked}" for name, asked in ASKED.items()
+    missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, required: {asked}" for name, asked in ASKED.items()
               if not total.get(name, 0) >= asked and not (options.only and name not in total)]
     print("\n".join(["", *wrong, *([] if options.quick else missed), f"peer.csv and pictures in {options.output}"]))
     print(" ".join(f"{name}={value:.0f}" for name, value in total.items() if options.quick or name in ASKED or name == "ratio_adaptive"))

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What steps cost from Python, beside `sprekk run`: python.py [--steps N]
+"""Cost of steps from Python, compared with `sprekk run`: python.py [--steps N]
 
-Each run is a process of its own that writes the same results; its processor time less that of a run of one step is
-what the other steps cost. The smaller of several counts. A callback that reads a field and an output, and no results,
-is timed as well."""
+Each run is a separate process that writes the same results. Its processor time minus the processor time of a run of one
+step is the cost of the other steps. The smallest of several costs counts. A run without results, with a callback that
+reads a field and an output, is timed as well."""
 import argparse
 import os
 import resource

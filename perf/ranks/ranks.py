@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The same scenes on more ranks, and scenes that grow with the number of ranks: iterations, messages and memory on 1 to 64 ranks, seconds on 1 and 2.
 
-Blocks and a network of fractures at random. More ranks than cores say nothing about time, but the counts are those of a cluster. --model predicts
-from them what an iteration takes there; --commands makes the meshes and prints how each run is started, for a machine with more cores."""
+The scenes are blocks and a network of random fractures. With more ranks than cores, times are meaningless, but the counts equal those of a cluster.
+--model predicts from them the time of an iteration on a cluster. --commands generates the meshes and prints the command of each run, for a machine
+with more cores."""
 import math
 import shlex
 import sys
@@ -190,9 +191,9 @@ def print_commands(options, chosen):
 def main(words):
     parser = linear.parser("ranks", __doc__)
     parser.add_argument("--edge", type=linear.count, default=42, metavar="N", help="cells along an edge of the box of the timed blocks (42, 280 thousand unknowns)")
-    parser.add_argument("--fractures", type=linear.count, default=150, metavar="N", help="of the timed network (150, 100 thousand unknowns and half as many of tips)")
+    parser.add_argument("--fractures", type=linear.count, default=150, metavar="N", help="fractures of the timed network (150, 100 thousand unknowns and half as many of tips)")
     parser.add_argument("--model", action="store_true", help="predict the seconds of an iteration on 10^2 to 10^5 ranks from the weak series")
-    parser.add_argument("--commands", action="store_true", help="make the meshes, and print the command line of each run instead of running it")
+    parser.add_argument("--commands", action="store_true", help="generate the meshes, and print the command line of each run instead of running it")
     options = parser.parse_args(words)
     chosen = linear.matching(options, cases(options), lambda case: case.name)
     options.output.mkdir(parents=True, exist_ok=True)
@@ -221,7 +222,7 @@ def main(words):
         missed += [f"missed: {kind}: {name} = {total[name]:.2f}, the bound is {BOUNDS['growth16' if name == f'growth{most}' else name]}"
                    for name in total if name != "speedup2" and total[name] > BOUNDS["growth16" if name == f"growth{most}" else name]]
         if total["speedup2"] < BOUNDS["speedup2"]:
-            last.append(f"missed: {kind}: speedup2 = {total['speedup2']:.2f}, asked are {BOUNDS['speedup2']}")
+            last.append(f"missed: {kind}: speedup2 = {total['speedup2']:.2f}, required: {BOUNDS['speedup2']}")
         last.append(" ".join(f"{name}_{kind}={value:.2f}" for name, value in total.items()))
     words = [line for line in last if line.startswith("missed")]
     print("\n".join(["", *failed, *missed, *words, f"ranks.csv and ranks.png in {options.output}"]))

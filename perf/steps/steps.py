@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Errors and costs of time steps that choose themselves, beside equal steps."""
+"""Errors and costs of automatic time steps, compared with equal steps."""
 import argparse
 import csv
 import json
@@ -173,9 +173,9 @@ def draw(rows, file):
 def main(words):
     parser = argparse.ArgumentParser(prog="sprekk perf steps", description=__doc__)
     parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/steps"), help="where the table and pictures go")
-    parser.add_argument("--only", default="", help="cases whose name has this in it")
-    parser.add_argument("--quick", action="store_true", help="fewer cases, one tolerance; judged by Newton iterations instead of seconds")
+    parser.add_argument("--output", type=Path, default=Path("output/perf/steps"), help="folder of the table and pictures")
+    parser.add_argument("--only", default="", help="cases whose name contains this text")
+    parser.add_argument("--quick", action="store_true", help="fewer cases, one tolerance; with bounds on Newton iterations instead of seconds")
     options = parser.parse_args(words)
     options.output.mkdir(parents=True, exist_ok=True)
     rows, failed, misses, costs = [], [], {}, {}

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Errors against exact solutions, unknowns and seconds: runs cases on several meshes each, prints a table and draws the errors.
 
-The last line of each case sums it up; README.md beside this file tells what is in the columns."""
+The last line of each case summarises it. README.md in this folder describes the columns."""
 import argparse
 import csv
 import math
@@ -193,7 +193,7 @@ def arguments(words):
     groups = [word for word, n in Counter(name.split("_")[0] for name in names).items() if n > 1 and word not in names]
     parser = argparse.ArgumentParser(prog="sprekk perf verification", description=__doc__)
     parser.add_argument("--only", metavar="CASE", action="append", choices=names + groups,
-                        help=f"one of {', '.join(names)}, or what several begin with ({', '.join(groups)}); may be repeated")
+                        help=f"one of {', '.join(names)}, or the common beginning of several ({', '.join(groups)}); may be repeated")
     parser.add_argument("--quick", action="store_true", help="coarse meshes only, for a test")
     parser.add_argument("--no-pictures", dest="pictures", action="store_false", help="tables only")
     parser.add_argument("--ranks", type=int, default=1, metavar="N", help="run on N ranks")
