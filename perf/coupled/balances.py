@@ -283,7 +283,7 @@ class Balances:
             self.notes.append("Biot's coefficient is not uniform: no balance of fluid")
             return all_
         if self.k.alpha and any(self.run.faces.beyond_nodes(state.bulk.point_data.get("tip displacement")) for state in self.run.states):
-            self.notes.append("a crack tip is beside the boundary: no balance of fluid")
+            self.notes.append("a crack tip is next to the boundary: no balance of fluid")
             return all_
         for number, factor, state, now, old, older in self.steps_with_states():
             step = self.steps[number]

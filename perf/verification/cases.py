@@ -274,7 +274,7 @@ def wavy():
         x, y = points.T
         return int((np.abs(x) < 1e-9).sum() + (np.abs(x - 0.5) < 1e-9).sum() + (np.abs(y + 2) < 1e-9).sum())
     sizes = [(f"h={h:g}", lambda folder, h=h: meshes.wavy(folder, h)) for h in (0.05, 0.025, 0.0125, 0.00625)]
-    return Case("wavy", "wavy fracture pressed together", "verification/wavy.xml",
+    return Case("wavy", "wavy fracture under compression", "verification/wavy.xml",
                 [Series(f"order {k}", gmsh(k, *sizes), quick=3) for k in (1, 2)], errors, prescribed,
                 ("order 2", "h=0.00625", "mean"), jumps, ("jump", "mean"), known,
                 [Order("order", "traction", 0.8), Bound("order 2", "h=0.0125", "mean", 2e-2)])

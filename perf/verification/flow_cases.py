@@ -77,7 +77,7 @@ def flow_conductor():
     series = around("conductor", "T0", (1, 10, 1e6, 1e10), flow_exact.Conductor, "verification/flow_conductor.xml")
     bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 1), ("velocity", 0.5), ("flow", 1), ("centre", 1))]
     bounds += [Bound(one.name, FINEST, "centre", 2e-3) for one in series]
-    return case("flow_conductor", "flow along a fracture in a plane without end", series, errors, ("T0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
+    return case("flow_conductor", "flow along a fracture in an infinite plane", series, errors, ("T0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
 
 
 def flow_barrier():
@@ -100,7 +100,7 @@ def flow_barrier():
     bounds += [Bound(one.name, FINEST, "leakage", 2e-3) for one in series]
     # positive everywhere
     bounds += [Bound(one.name, label, "at faces", 0.4) for one in series for label, _ in one.meshes]
-    return case("flow_barrier", "flow around and through a fracture that resists it", series, errors, ("c0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
+    return case("flow_barrier", "flow around and across a fracture of low permeability", series, errors, ("c0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
 
 
 # Wells
@@ -147,7 +147,7 @@ def flow_patch():
     series = [Series("rt0 triangle", meshed, "verification/flow_patch_2d.xml", DIRECT, flow_exact.Linear(G[:2]), 2)]
     series += [Series(name, boxes(3, (4, 8, 12)), "verification/flow_patch_3d.xml", (*DIRECT, *sets), flow_exact.Linear(G), 1) for name, sets in shapes(3).items()]
     bounds = [Bound(one.name, label, name, 1e-10) for one in series for label, _ in one.meshes for name in ("pressure", "velocity", "in fracture", "flow")]
-    return case("flow_patch", "a constant gradient of pressure through fractures that cross", series, errors, (series[0].name, "h=0.05", "flow"), bounds)
+    return case("flow_patch", "a constant pressure gradient with intersecting fractures", series, errors, (series[0].name, "h=0.05", "flow"), bounds)
 
 
 # Published benchmarks

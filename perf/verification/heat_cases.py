@@ -37,7 +37,7 @@ def heat_half_space():
                      f"heat/cooling_{d}d.xml", (f"Mesh.cell={cell}",), None, 2)
               for d, cells in ((2, ("triangle", "quadrilateral")), (3, ("tetrahedron", "hexahedron"))) for cell in cells]
     bounds = [Order(one.name, "temperature", 1.8) for one in series] + [Bound(one.name, "n=120", "temperature", 3e-5) for one in series]
-    return case("heat-half-space", "rock that cools", series, errors, ("quadrilateral", "n=120", "temperature"), bounds)
+    return case("heat-half-space", "cooling of a half space", series, errors, ("quadrilateral", "n=120", "temperature"), bounds)
 
 
 def heat_front():
@@ -56,7 +56,7 @@ def heat_front():
               for d, cell in ((2, "quadrilateral"), (3, "hexahedron")) for scheme in ("upwind", "second order")]
     bounds = [Order("upwind", "temperature", 0.8), Order("second order", "temperature", 1.5)]
     bounds += [Bound(one.name, "n=160", "temperature", 5e-4 if "second" in one.name else 0.02) for one in series]
-    return case("heat-front", "a front that is carried", series, errors, ("quadrilateral second order", "n=160", "temperature"), bounds)
+    return case("heat-front", "advection of a front", series, errors, ("quadrilateral second order", "n=160", "temperature"), bounds)
 
 
 # Sliding and opening fracture

@@ -105,7 +105,7 @@ def mandel():
                      ("Mesh.cell=quadrilateral",), known, 1, dimension=1)]
     bounds = [Bound("quadrilateral 5 s", "400 x 4, 5 s", "pressure", 3.5e-3), Bound("BDF2 5 s", "400 x 4, 5 s", "pressure", 1e-3), Bound("triangle 5 s", "150 x 8, 5 s", "pressure", 4e-3),
               Order("quadrilateral step 1", "pressure", 2), Order("quadrilateral 5000 s", "pressure", 2)]
-    return case("mandel", "a plate pressed together", series, errors, ("quadrilateral 5 s", "400 x 4, 5 s", "pressure"), bounds)
+    return case("mandel", "a plate between rigid plates", series, errors, ("quadrilateral 5 s", "400 x 4, 5 s", "pressure"), bounds)
 
 
 # Manufactured solutions

@@ -44,7 +44,7 @@ def opened(d, counts):
     fine = 2 if d == 2 else 1.9  # observed on meshes of this size
     least = {"pressure": 2, "u": 2, "in fracture": fine, "flow": 1, "jump": fine}
     bounds = [Order(one.name, *bound) for one in series for bound in least.items()]
-    return Case(f"mms_opening{d}d", f"manufactured solution of a fracture that a fluid opens in {d}D", "", series, opened_errors, None,
+    return Case(f"mms_opening{d}d", f"manufactured solution of a fracture opened by fluid pressure in {d}D", "", series, opened_errors, None,
                 (f"{SHAPES[d][0]} 1", f"n={counts[1][-1]}", "pressure"), None, ("pressure", "u"), None, bounds, called=("pressure", "u"))
 
 

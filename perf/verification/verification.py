@@ -224,7 +224,7 @@ def main(words):
                 draw(case, rows, options.output / f"{case.name}.png")
             if options.pictures and case.picture:
                 case.picture(options.output / f"{case.name}_lines.png")
-        print("\n".join([f"  missed: {what}" for what in wrong] + [f"  {judged} bounds looked at"]))
+        print("\n".join([f"  missed: {what}" for what in wrong] + [f"  {judged} bounds checked"]))
         if case.jumps:
             print(effectivities(case, rows))
         print(last_line(case, rows) + "\n", flush=True)
