@@ -7,7 +7,6 @@ install(TARGETS sprekk_app DESTINATION ${home}/apps/sprekk COMPONENT program)
 install(PROGRAMS sprekk DESTINATION ${home} COMPONENT program)
 install(DIRECTORY apps/export apps/fit apps/mesh apps/plot apps/report DESTINATION ${home}/apps COMPONENT program
   FILES_MATCHING PATTERN "*.py" PATTERN "*.css" PATTERN __pycache__ EXCLUDE)
-install(FILES perf/contact/joint_laws.py perf/contact/violation.py DESTINATION ${home}/perf/contact COMPONENT program)
 install(FILES docs/use/reference.md DESTINATION ${home}/docs/use COMPONENT program)
 install(DIRECTORY xml/ DESTINATION ${home}/xml COMPONENT program)
 install(FILES docs/read_results.py docs/shear_test.xml docs/two_rocks.xml DESTINATION ${home}/docs COMPONENT program)

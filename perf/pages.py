@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Writes the tables in the pages of results from the CSV files beside them, and checks the numbers in their text.
 
     ./sprekk perf pages            writes the tables in docs/results/*.md, then checks
@@ -24,7 +23,6 @@ import argparse
 import csv
 import re
 import sqlite3
-import sys
 import textwrap
 from pathlib import Path
 
@@ -165,12 +163,12 @@ def filled(page, sources, connection):
     return BLOCK.sub(fill, page.read_text()), used
 
 
-def main():
+def main(words):
     parser = argparse.ArgumentParser(prog="sprekk perf pages", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="change nothing")
     parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[1], help="the sources")
-    options = parser.parse_args()
+    options = parser.parse_args(words)
     folder, wrong = options.root / "docs/results", []
     sources = [Source(file) for file in sorted(folder.glob("*.csv"))]
     connection = sqlite3.connect(":memory:")
@@ -195,7 +193,3 @@ def main():
     wrong += unfounded_lines("README.md", lines, [one for one in sources if set(one["command"].split()) & measured])
     print(*wrong, sep="\n", end="\n" * bool(wrong))
     return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,6 @@
-#!/usr/bin/env python3
 """Runs a measurement and saves its table as a source of the pages of results.
 
-    save.py NAME [options of the measurement] --save[=FILE]
+    ./sprekk perf NAME [options of the measurement] --save[=FILE]
 
 writes docs/results/FILE.csv, by default NAME.csv. The file begins with comments: command, commit of the program,
 machine, date, load of the machine, results (the last lines of the measurement) and targets. If a measurement writes
@@ -9,7 +8,7 @@ several tables, the column "table" contains the name of each."""
 import argparse
 import csv
 import datetime
-import importlib.util
+import importlib
 import os
 import re
 import shlex
@@ -46,12 +45,7 @@ def machine():
 
 def targets(name, file):
     """Targets that perf/NAME/FILE.py declares, by the name of the result."""
-    path = ROOT / f"perf/{name}/{file}.py"
-    specification = importlib.util.spec_from_file_location(f"measurement_{file}", path)
-    module = importlib.util.module_from_spec(specification)
-    sys.path.insert(0, str(path.parent))
-    sys.modules[specification.name] = module
-    specification.loader.exec_module(module)
+    module = importlib.import_module(f"perf.{name}.{file}")
     declared = getattr(module, "ASKED", None) or getattr(module, "BOUNDS", {})
     return {key: bound[1] if isinstance(bound, tuple) else bound for key, bound in declared.items()} \
         if isinstance(declared, dict) else {}
@@ -59,7 +53,7 @@ def targets(name, file):
 
 def run(name, words, folder):
     """Lines with results; prints all lines as they come."""
-    command = [sys.executable, "-B", "-u", str(ROOT / f"perf/{name}/{name}.py"), *words, "--output", str(folder)]
+    command = [sys.executable, "-B", "-u", str(ROOT / "perf"), name, *words, "--output", str(folder)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         lines = []
         for line in process.stdout:
@@ -106,7 +100,3 @@ def main(name, words):
         writer.writerows(rows)
     print(f"saved as {file.relative_to(ROOT)}; ./sprekk perf pages updates the pages")
     return status
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], sys.argv[2:]))

@@ -124,21 +124,19 @@ docs() {
 
 # perf NAME [options]: the measurement perf/NAME/NAME.py; perf pages: the pages of results
 perf() {
-  local name=${1-} names needs=(gmsh) targets=(sprekk_app) program
+  local name=${1-} names needs=(gmsh) targets=(sprekk_app)
   if [[ $name == pages ]]; then
     install_missing python3
-    exec "$(debian_python)" -B "$root/perf/pages.py" "${@:2}"
+    exec "$(debian_python)" -B "$root/perf" "$@"
   fi
-  program=("$root/perf/$name/$name.py")
-  if [[ " $*" == *" --save"* ]]; then program=("$root/perf/save.py" "$name"); fi
-  names=$(cd "$root/perf" && ls -d -- */ | tr -d '/' | paste -sd ' ')
+  names=$(cd "$root/perf" && for name in */; do if [[ -f $name${name%/}.py ]]; then echo "${name%/}"; fi; done | paste -sd ' ')
   [[ $name && " $names " == *" $name "* ]] || usage_error "perf needs the name of a measurement, one of: $names${name:+; got \"$name\"}"
   if [[ $name == networks || $name == contact || $name == laws ]]; then needs+=("${mesh_packages[@]}"); fi
   if [[ $name == contact || $name == experiments ]]; then needs+=(python3-scipy); fi
   if [[ $name == bulk ]]; then needs+=(python3-dolfinx); fi
   if [[ $name == build ]]; then  # builds in a separate copy
     install_missing "${packages[@]}"
-    exec "$(debian_python)" -B "${program[@]}" "${@:2}"
+    exec "$(debian_python)" -B "$root/perf" "$@"
   fi
   if [[ $name == python ]]; then
     needs+=("${python_packages[@]}") targets+=(sprekk_python)
@@ -148,7 +146,7 @@ perf() {
   if [[ -f $root/perf/$name/CMakeLists.txt ]]; then targets+=("perf_$name"); fi
   install_missing "${plot_packages[@]}" "${needs[@]}"
   build "${targets[@]}"
-  exec "$(debian_python)" -B "${program[@]}" "${@:2}"
+  exec "$(debian_python)" -B "$root/perf" "$@"
 }
 
 # comma_separated NAMES...: sorted, each one once

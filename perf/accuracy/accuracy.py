@@ -1,24 +1,17 @@
-#!/usr/bin/env python3
 """Error control: target, estimated and true errors, compared with uniform meshes of order 1 and 2."""
-import argparse
 import csv
-import json
 import math
-import os
 import re
-import shutil
-import subprocess
-import sys
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/verification")]
+import style
 
-import exact  # noqa: E402
-import meshes  # noqa: E402
-import style  # noqa: E402
+from perf.common import options as common
+from perf.common import program, table
+from perf.verification import exact, meshes
+
+ROOT = program.ROOT
 
 REQUESTS = (0.1, 0.01, 0.001)
 OVERSHOOT = 1.5  # allowed ratio of the true error to the request
@@ -124,14 +117,13 @@ def cases():
 
 def network(folder, relative, at_tips, size):
     """Mesh of the scene random_3d_50 with other cell sizes. Raises NoGmsh if it fails."""
-    folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"network_50_{relative:g}_{at_tips:g}_{size:g}.msh"
     if not file.is_file():
         sizes = (f"relative size={relative:g}", f"size at tips={at_tips:g} m", f"size={size:g}")
-        command = [sys.executable, "-B", ROOT / "apps/mesh", "--program", ROOT / "build/apps/sprekk/sprekk", ROOT / "xml/networks/random_3d_50.xml",
-                   "-o", file, "--quiet", *(word for size in sizes for word in ("--set", f"Mesh file.network.{size}"))]
-        if subprocess.run(command, capture_output=True, stdin=subprocess.DEVNULL).returncode:
-            raise meshes.NoGmsh("no mesh of a network could be made")
+        try:
+            program.mesh(ROOT / "build/apps/sprekk/sprekk", "networks/random_3d_50.xml", file, [f"Mesh file.network.{size}" for size in sizes])
+        except program.Failed as error:
+            raise meshes.NoGmsh("no mesh of a network could be made") from error
     return file
 
 
@@ -154,9 +146,8 @@ def unasked(scene, folder):
 
 
 def start(options, case, order, source, asked, label, others=()):
-    """Runs a case and returns its results; without `asked` on the given mesh. Raises RuntimeError if the run fails."""
+    """Runs a case and returns its results; without `asked` on the given mesh. Raises Failed if the run fails."""
     directory = options.output / re.sub(r"\W+", "_", case.name) / label
-    shutil.rmtree(directory, ignore_errors=True)
     mesh = entries(source, options.output / "meshes")
     section = "Mesh file" if mesh[0].startswith("Mesh file") else "Mesh"
     sets = ["Output.vtu=false", *case.sets, *mesh, f"{section}.order={order}", *others]
@@ -169,16 +160,8 @@ def start(options, case, order, source, asked, label, others=()):
             sets.append("{}.{}={}".format(goal, *case.fractures.split()))
         elif case.fractures:
             sets.append(f"{goal}.fractures={{{case.fractures}}}")
-    command = [str(options.binary), "run", str(unasked(ROOT / "xml" / case.scene, options.output / "meshes")), "--output", str(directory)]
-    command += [word for entry in sets for word in ("--set", entry)]
-    if options.ranks > 1:
-        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(options.ranks)] + command
-    done = subprocess.run(["timeout", "--kill-after=5", str(TIME_LIMIT), *command], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode != 0:
-        words = [line for line in (done.stdout + done.stderr).splitlines() if any(c.isalpha() for c in line)] or ["no word"]
-        raise RuntimeError(f"{case.name}, {label}: status {done.returncode}: {words[-1]}")
-    return json.loads((directory / "results.json").read_text())
+    scene = unasked(ROOT / "xml" / case.scene, options.output / "meshes")
+    return program.succeeded(options.binary, scene, directory, sets, options.ranks, clock=TIME_LIMIT).results
 
 
 def value_of(case, results):
@@ -257,11 +240,11 @@ def reference_of(options, case, steps):
         return uniform(options, case, 2, "reference", case.finest, steps).value, steps
     row, steps = adaptive(options, case, 2, 1e-3 if options.quick else case.reference, "reference")
     if not row.reached:
-        raise RuntimeError(f"its reference is known to {100 * row.estimate:.2g} % only; take more --seconds")
+        raise program.Failed(f"its reference is known to {100 * row.estimate:.2g} % only; take more --seconds")
     return row.value, steps
 
 
-def table(case, rows):
+def show(case, rows):
     print(f"\n{case.name}: {case.quantity}{' of ' + case.fractures if case.fractures else ''}")
     print(f"{'':10}{'order':>6}{'asked':>9}{'cells':>9}{'seconds':>9}{'true':>11}{'estimate':>11}{'est./true':>11}{'speed-up':>10}")
     plain = [row for row in rows if row.kind == "uniform"]
@@ -293,16 +276,12 @@ def draw(measured, file):
     style.plt.close(figure)
 
 
-def main():
-    parser = argparse.ArgumentParser(prog="./sprekk perf accuracy", description=__doc__)
+def main(words):
+    parser = common.parser("accuracy", __doc__, "two coarse meshes, 10 %% and 1 %%, of three cases", only=None, sets=False)
     parser.add_argument("--only", action="append", help="cases whose names begin with this text; may be repeated")
-    parser.add_argument("--quick", action="store_true", help="two coarse meshes, 10 %% and 1 %%, of three cases")
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=300, help="limit of an adaptive run")
-    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/accuracy"))
-    options = parser.parse_args()
-    options.binary, options.output = options.binary.resolve(), options.output.resolve()
+    options = parser.parse_args(words)
     chosen = [case for case in cases() if not options.only or any(case.name.startswith(name) for name in options.only)]
     if options.quick and not options.only:
         chosen = [case for case in chosen if case.name in ("sliding", "wavy contact", "X crossing")]
@@ -312,17 +291,14 @@ def main():
     for case in chosen:
         try:
             measured.append((case, measure(options, case)))
-            table(*measured[-1])
-        except (RuntimeError, meshes.NoGmsh) as error:
+            show(*measured[-1])
+        except (program.Failed, meshes.NoGmsh) as error:
             failures += not isinstance(error, meshes.NoGmsh)
             print(f"\n{case.name}: {'skipped' if isinstance(error, meshes.NoGmsh) else 'failed'}: {error}", flush=True)
     if not measured:
         return 1 if failures else 0
-    options.output.mkdir(parents=True, exist_ok=True)
-    with open(options.output / "accuracy.csv", "w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(["case", *vars(measured[0][1][0])])
-        writer.writerows([case.name, *vars(row).values()] for case, rows in measured for row in rows)
+    table.write(options.output / "accuracy.csv", ["case", *vars(measured[0][1][0])],
+                [[case.name, *vars(row).values()] for case, rows in measured for row in rows])
     draw(measured, options.output / "accuracy.png")
     asked = [(case, row, rows) for case, rows in measured for row in rows if row.kind == "adaptive"]
     reached = [row for _, row, _ in asked if row.reached and row.error <= OVERSHOOT * row.asked]
@@ -333,7 +309,3 @@ def main():
     print(f"\nrequested={len(asked)} reached={len(reached)} worst_overshoot={max(row.error / row.asked for _, row, _ in asked):.2f} "
           f"effectivity={min(ratios):.2f}..{max(ratios):.2f} speedup_1pc={min(speed):.1f}")
     return 1 if failures or (options.quick and len(reached) < len(asked)) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,18 +1,11 @@
-#!/usr/bin/env python3
 """Memory allocations in a step, at the beginning of a run and after a thousand steps.
 
 The difference between runs of N and N - 2 steps gives the allocations of two steps, one load cycle. counter.cpp counts
 them."""
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "perf/krylov"))
-
-import linear  # noqa: E402
+from perf.common import options as common
+from perf.common import program, table
 
 SCENE = "contact/cycles_2d.xml"
 # and the late step
@@ -32,11 +25,7 @@ def run(options, sets, steps):
     file, directory = options.output / "total.json", options.output / "run"
     entries = (*sets, *options.set, f"Time.end={steps}", f"Time.steps={steps}", f"Output.every={steps}")
     file.unlink(missing_ok=True)
-    done = subprocess.run([str(options.binary), "run", str(ROOT / "xml" / SCENE), "--output", str(directory), *(word for entry in entries for word in ("--set", entry))],
-                          capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          env={**os.environ, "OMP_NUM_THREADS": "1", "LD_PRELOAD": str(options.counter), "SPREKK_ALLOCATIONS": str(file.resolve())})
-    if done.returncode:
-        sys.exit(f"allocations: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
+    program.checked(program.command(options.binary, SCENE, directory, entries), LD_PRELOAD=str(options.counter), SPREKK_ALLOCATIONS=str(file))
     told = [json.loads(line) for line in file.read_text().splitlines()]
     return max((process["calls"], process["bytes"]) for process in told)  # MPI's own processes allocate less
 
@@ -51,24 +40,17 @@ def of_step(options, sets, step):
 
 
 def main(words):
-    parser = linear.parser("allocations", __doc__)
-    parser.add_argument("--counter", type=Path, default=ROOT / "build/perf/allocations/liballocations.so", help="the compiled counter.cpp")
+    parser = common.parser("allocations", __doc__)
+    counter = program.ROOT / "build/perf/allocations/liballocations.so"
+    parser.add_argument("--counter", type=common.absolute, default=counter, help="the compiled counter.cpp")
     options = parser.parse_args(words)
-    chosen = linear.matching(options, SERIES)
-    options.output.mkdir(parents=True, exist_ok=True)
-    table, most = linear.Table(COLUMNS, 22), 0
+    chosen = common.matching(options, SERIES)
+    printed, most = table.Table(COLUMNS, 22), 0
     for name in chosen:
         sets, last = SERIES[name]
         found = {step: of_step(options, sets, step) for step in (EARLY, QUICK_LATE if options.quick else last)}
         for step, (calls, size) in found.items():
-            table.add([name, step, calls, size / 1e3])
+            printed.add([name, step, calls, size / 1e3])
         early, late = found.values()
         most = max([most, *(b / max(a, 1) - 1 for a, b in zip(early, late))])
-    table.write(options.output / "allocations.csv")
-    wrong = linear.missed({"growth": most}, {"growth": MORE})
-    print("\n".join(["", *wrong, f"allocations.csv in {options.output}", f"growth={most:.4f}"]))
-    return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    return table.finish(options, printed, {"growth": most}, {"growth": ".4f"}, {"growth": MORE}) or int(most > MORE)

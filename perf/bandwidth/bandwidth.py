@@ -1,17 +1,13 @@
-#!/usr/bin/env python3
 """Costs of the parts of a Newton step, in products of the displacement matrix with a vector, and their share of the memory bandwidth.
 
 The scene is a network with open, sticking and sliding fractures. bandwidth.cpp measures the times."""
 import json
-import sys
 
-from pathlib import Path
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "perf/krylov"))
-
-import linear  # noqa: E402
-from krylov import STATES  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import measured
+from perf.krylov import linear
+from perf.krylov.krylov import STATES
 
 STATE = "mixed"
 EDGE, QUICK = 30, 18  # cells along an edge: 111 and 29 thousand unknowns
@@ -74,7 +70,7 @@ def asked(key):
 
 def run(options, cells, edge):
     sets = (*linear.ALWAYS, *linear.cells(edge), f"Mesh.cell={CELLS[cells]}", *STATES[STATE])
-    found = linear.measured(options, linear.SCENE, sets, options.ranks)
+    found = measured(options, linear.SCENE, sets, options.ranks)
     (options.output / f"{cells}.json").write_text(json.dumps(found, indent=2))
     return Measured(found)
 
@@ -105,26 +101,18 @@ def draw(measured, file):
 
 
 def main(words):
-    parser = linear.parser("bandwidth", __doc__, program=True)
-    parser.add_argument("--edge", type=linear.count, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
-    parser.add_argument("--ranks", type=linear.count, default=1, metavar="N", help="ranks (1)")
+    parser = common.parser("bandwidth", __doc__, program=True)
+    parser.add_argument("--edge", type=common.count, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
+    parser.add_argument("--ranks", type=common.count, default=1, metavar="N", help="ranks (1)")
     options = parser.parse_args(words)
-    chosen = linear.matching(options, CELLS)
-    options.output.mkdir(parents=True, exist_ok=True)
+    chosen = common.matching(options, CELLS)
     edge = options.edge or (QUICK if options.quick else EDGE)
-    table, measured = linear.Table(COLUMNS, 42), {}
+    printed, measured = table.Table(COLUMNS, 42), {}
     for cells in chosen:
         measured[cells] = one = run(options, cells, edge)
         for name, count, seconds, of_triad, of_time, key in one.parts():
-            table.add([f"{cells}: {name}", count, 1e3 * seconds, seconds / one.spmv, of_triad, of_time, asked(key)])
-    table.write(options.output / "bandwidth.csv")
+            printed.add([f"{cells}: {name}", count, 1e3 * seconds, seconds / one.spmv, of_triad, of_time, asked(key)])
     draw(measured, options.output / "bandwidth.png")
     worst = {key: (min if key == "triad" or ASKED[key][0] > 0 else max)(one.summary()[key] for one in measured.values()) for key in ("triad", *ASKED)}
-    missed = [f"missed: {key} = {worst[key]:.3g}, required: {asked(key)}" for key, (sign, bound) in ASKED.items() if sign * worst[key] < sign * bound]
-    print("\n".join(["", *missed, f"bandwidth.csv and bandwidth.png in {options.output}"]))
-    print(" ".join(f"{key}={format(value, FORMATS.get(key, '.0f'))}" for key, value in worst.items()))
-    return 1 if worst["assemblies"] > ASKED["assemblies"][1] else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    table.finish(options, printed, worst, {key: FORMATS.get(key, ".0f") for key in worst}, ASKED)
+    return int(worst["assemblies"] > ASKED["assemblies"][1])

@@ -1,18 +1,13 @@
-#!/usr/bin/env python3
 """CPU seconds of a build from an empty cache: of the program, of the tests, and of a new law from edit to result.
 
 Copies the sources to OUTPUT/source and builds them there without a compiler cache. Each compilation is timed, and its
 lines are counted: lines that the compiler reads after preprocessing, without empty ones, precompiled headers as well.
 The law is that of docs/develop/add_a_law.md. Figures are CPU time of all processes of a build, which other work on the
-machine raises a little. Wall time is printed as well.
-
-    build.py [--only program|tests|law] [--jobs N] [--output DIR]"""
-import argparse
+machine raises a little. Wall time is printed as well."""
 import csv
 import json
 import os
 import re
-import resource
 import shlex
 import shutil
 import subprocess
@@ -21,15 +16,12 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-LAUNCHER = "--compile"  # build.py --compile LOG COMMAND... runs the command and appends its CPU seconds to LOG
+from perf.common import options as common
+from perf.common.program import ROOT, cpu_seconds
+
+LAUNCHER = "--compile"  # perf build --compile LOG COMMAND... runs the command and appends its CPU seconds to LOG
 PAGE, SCENE = "docs/develop/add_a_law.md", "xml/point/power_joint.xml"
 MAX_MINUTES = {"program": 10, "tests": 12, "law": 2}
-
-
-def cpu_seconds():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 def compile_and_log(log, *command):
@@ -55,7 +47,7 @@ class Build:
         for name in filter(lambda name: (ROOT / name).is_file(), files):
             (self.source / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, self.source / name)
-        launcher = [sys.executable, str(Path(__file__).resolve()), LAUNCHER, str(self.log)]
+        launcher = [sys.executable, "-B", str(ROOT / "perf"), "build", LAUNCHER, str(self.log)]
         self.run("cmake", "-S", self.source, "-B", self.tree, "-G", "Ninja",
                  f"-DCMAKE_CXX_COMPILER_LAUNCHER={';'.join(launcher)}")
         self.log.unlink(missing_ok=True)  # compiler checks
@@ -140,14 +132,13 @@ def report(what, seconds, lines, cpu, wall, table):
         table.writerow([what, target_of(name), short, 1, f"{seconds[name]:.2f}", lines[name]])
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def main(words):
+    if words[:1] == [LAUNCHER]:
+        return compile_and_log(*words[1:])
+    parser = common.parser("build", __doc__, None, None, sets=False)
     parser.add_argument("--only", choices=["program", "tests", "law"], help="one figure; the others are left out")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilations at a time")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/build"))
-    options = parser.parse_args()
-    options.output = options.output.resolve()
-    options.output.mkdir(parents=True, exist_ok=True)
+    options = parser.parse_args(words)
     build = Build(options)
     figures = {}
     with open(options.output / "build.csv", "w", newline="") as file:
@@ -165,7 +156,3 @@ def main():
                 break
     print(" ".join(f"{what}_cpu_min={minutes:.2f}" for what, minutes in figures.items()))
     return any(minutes > MAX_MINUTES[what] for what, minutes in figures.items())
-
-
-if __name__ == "__main__":
-    sys.exit(compile_and_log(*sys.argv[2:]) if sys.argv[1:2] == [LAUNCHER] else main())

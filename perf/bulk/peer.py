@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Solves the block of bulk.py in DOLFINx with conjugate gradients of PETSc, as a separate program on one rank.
 
     peer.py DIR EDGE YOUNG POISSON TRACTION_X,Y,Z RESIDUAL NAME...    a NAME is one of SOLVERS

@@ -1,40 +1,28 @@
-#!/usr/bin/env python3
 """Robustness of the contact solver: runs scenes one after the other and prints a table.
 
 Steps are those of the scene. The Newton iterations of a step include those of all substeps, also of rejected ones."""
-import argparse
-import csv
 import re
-import sys
 from dataclasses import dataclass, field
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/krylov")]
+import numpy as np
+import violation
 
-import numpy as np  # noqa: E402
+from perf.common import options as common
+from perf.common import program, table
+from perf.contact import drawn_runs
+from perf.contact.scenes import scenes
 
-import drawn_runs  # noqa: E402
-import linear  # noqa: E402
-import program_run  # noqa: E402
-import violation  # noqa: E402
-from scenes import scenes  # noqa: E402
-
-LIMITS = program_run.Limits(processor=120, clock=900)
+LIMITS = {"cpu": 120, "clock": 900}  # seconds of the processor per rank; seconds, which depend on the load of the machine
 BOUNDS = {"median": 5, "p90": 12, "worst_violation": 1e-8}  # limits of --quick when it serves as a test
-COLUMNS = ("scene", "dim", "unknowns", "steps", "median", "max", "cuts", "failures", "residual", "violation", "error", "undirected", "seconds")
-SMALL = ("residual", "violation", "error")
+FORMATS = {"median": "g", "p90": "g", "max": "g", "worst_violation": ".1e"}
+COLUMNS = {**dict.fromkeys(("scene", "dim", "unknowns", "steps", "median", "max", "cuts", "failures"), "g"),
+           **dict.fromkeys(("residual", "violation", "error"), ".0e"), "undirected": "g", "seconds": ".1f"}
 
 
 @dataclass
-class Run:
+class Run(program.Run):
     """Measured values of one scene. `failures` contains the messages of failed checks."""
-    scene: object
-    directory: Path
-    ranks: int = 1
-    seconds: float = 0
-    words: str = ""
-    results: dict = field(default_factory=dict)
+    scene: object = None
     input: object = None
     faces: list = field(default_factory=list)
     scales: object = None
@@ -44,20 +32,8 @@ class Run:
     failures: list = field(default_factory=list)
 
     @property
-    def steps(self):
-        return self.results.get("steps", [])
-
-    @property
-    def newton(self):
-        return [step["newton_iterations"] for step in self.steps]
-
-    @property
     def dim(self):
         return self.results["mesh"]["dimension"]
-
-    @property
-    def unknowns(self):
-        return next(f["unknowns"] for f in self.results["blocks"]["fields"] if f["name"] == "displacement")
 
     @property
     def measured(self):
@@ -66,31 +42,30 @@ class Run:
 
 
 def start(options, scene, ranks):
-    """Runs the scene; returns (Run, status). The status is None after a time limit."""
+    """Runs the scene."""
     directory = options.output / re.sub(r"[^\w.+-]+", "_", scene.name) / f"{ranks}"
-    words = [word for entry in scene.sets for word in ("--set", entry)]
-    ended = program_run.run(options.binary, ROOT / "xml" / scene.file, directory, ranks, words, LIMITS)
-    run = Run(scene, directory, ranks, ended.seconds, ended.words, ended.results)
-    return run, ended.status
+    run = program.run(options.binary, scene.file, directory, scene.sets, ranks, **LIMITS, kind=Run)
+    run.scene = scene
+    return run
 
 
-def judge(run, status):
+def judge(run):
     """Computes violations and errors from the results and adds messages to run.failures."""
     scene = run.scene
     if scene.refused:
         said = re.search(scene.refused, run.results.get("reason", ""), re.IGNORECASE)
-        if status in (0, None) or not said:
-            run.failures.append(f"not refused as it should be: status {status}, {program_run.last_line(run.words)}")
+        if run.status in (0, None) or not said:
+            run.failures.append(f"not refused as it should be: status {run.status}, {run.last_line}")
         return run
-    if status != 0:
-        run.failures.append(f"no end within {LIMITS.processor} s of a processor" if status is None
-                            else f"status {status}: {program_run.last_line(run.words)}")
+    if run.status != 0:
+        run.failures.append(f"no end within {LIMITS['cpu']} s of a processor" if run.status is None
+                            else f"status {run.status}: {run.last_line}")
     if not run.steps:
         return run
     if (run.directory / "fractures.pvd").is_file():
         run.input = violation.Input(run.directory / "effective_input.xml")
         run.faces, run.scales, run.worst, run.undirected = violation.largest(run.directory, run.results, run.input)
-    if status != 0:
+    if run.status != 0:
         return run
     if scene.exact:
         run.error = scene.exact(run)
@@ -127,7 +102,7 @@ def row(run):
     if run.results.get("mesh") and run.results.get("blocks"):
         values[1:3] = run.dim, run.unknowns
     if run.steps:
-        values[3:7] = len(run.steps), float(np.median(run.newton)), max(run.newton), sum(s["cuts"] for s in run.steps)
+        values[3:7] = len(run.steps), float(np.median(run.newton)), max(run.newton), run.cuts
         values[8] = max(max(step["measures"].values(), default=0) for step in run.steps)
         values[9] = None if run.worst is None else float(run.worst.max())
     values[7], values[10:] = len(run.failures), [run.error, run.undirected, run.seconds]
@@ -135,9 +110,7 @@ def row(run):
 
 
 def line(values):
-    words = [v if isinstance(v, str) else "-" if v is None else f"{v:.1f}" if column == "seconds"
-             else f"{v:.0e}" if column in SMALL else f"{v:g}" for column, v in zip(COLUMNS, values)]
-    return f"{words[0]:28}" + "".join(f"{word:>{max(8, len(COLUMNS[k + 1]) + 2)}}" for k, word in enumerate(words[1:]))
+    return table.line(values, COLUMNS, width=28, least=8)
 
 
 def same_counts(runs):
@@ -179,51 +152,33 @@ def bar_chart(runs, file, most=40):
     figure.savefig(file, dpi=150)
 
 
-def arguments(words):
-    parser = argparse.ArgumentParser(prog="sprekk perf contact", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="a third of the scenes; without --only the status is also 1 above a stated bound")
-    parser.add_argument("--ranks", type=linear.count, default=1, metavar="N", help="also run on N ranks, and compare the states")
-    drawn_runs.add_options(parser)
-    linear.add_only(parser, "scenes")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/contact"), metavar="DIR")
-    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
-    return parser.parse_args(words)
-
-
 def main(words):
-    options = arguments(words)
+    parser = common.parser("contact", __doc__, "a third of the scenes; without --only the status is also 1 above a stated bound", "scenes", sets=False)
+    parser.add_argument("--ranks", type=common.count, default=1, metavar="N", help="also run on N ranks, and compare the states")
+    drawn_runs.add_options(parser)
+    options = parser.parse_args(words)
     if options.random:
-        import random_run
+        from perf.contact import random_run
         return random_run.main(options)
-    chosen = linear.matching(options, [s for s in scenes() if s.quick or not options.quick], lambda scene: scene.name)
-    options.output.mkdir(parents=True, exist_ok=True)
+    chosen = common.matching(options, [s for s in scenes() if s.quick or not options.quick], lambda scene: scene.name)
     print(line(COLUMNS))
     runs = []
     for scene in chosen:
-        run, notes = judge(*start(options, scene, 1)), []
+        run, notes = judge(start(options, scene, 1)), []
         if options.ranks > 1:
-            other = judge(*start(options, scene, options.ranks))
+            other = judge(start(options, scene, options.ranks))
             run.failures += [f"on {options.ranks} ranks: {what}" for what in other.failures]
             notes = compare(run, other) if not run.failures else []
         runs.append(run)
         print("\n".join([line(row(run))] + [f"  {what}" for what in run.failures] + notes), flush=True)
     same_counts(runs)
-    with open(options.output / "contact.csv", "w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS + violation.PARTS + ("what failed",))
-        writer.writerows(row(run) + ([""] * len(violation.PARTS) if run.worst is None else run.worst.tolist())
-                         + ["; ".join(run.failures)] for run in runs)
+    table.write(options.output / "contact.csv", [*COLUMNS, *violation.PARTS, "what failed"],
+                [row(run) + ([""] * len(violation.PARTS) if run.worst is None else run.worst.tolist()) + ["; ".join(run.failures)] for run in runs])
     bar_chart(runs, options.output / "contact.png")
     total = summary(runs)
     print(f"\n{len(runs)} scenes in {sum(run.seconds for run in runs):.0f} s, {sum(len(run.faces) for run in runs)} steps written, "
           f"{sum(run.undirected for run in runs)} of them not judged by direction; "
           f"{sum(bool(run.scene.refused) for run in runs)} scenes that must be refused are not in the counts; contact.csv and contact.png in {options.output}")
-    above = [] if options.only else [f"{key} = {total[key]:g}, the bound is {bound:g}" for key, bound in BOUNDS.items() if total[key] > bound]
-    for what in [f"failed: {run.scene.name}: {what}" for run in runs for what in run.failures] + above:
-        print(what)
-    print("failures={failures} median={median:g} p90={p90:g} max={max:g} worst_violation={worst_violation:.1e}".format(**total))
+    above = [] if options.only else table.missed(total, BOUNDS)
+    print("\n".join([*(f"failed: {run.scene.name}: {what}" for run in runs for what in run.failures), *above, table.results(total, FORMATS)]))
     return 1 if total["failures"] or (options.quick and above) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

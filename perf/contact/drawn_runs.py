@@ -7,7 +7,8 @@ from functools import partial
 
 import numpy as np
 
-import linear  # in perf/krylov
+from perf.common import options as common
+from perf.common.table import results as last_line
 
 VERDICTS = ("ok", "refused", "failed", "hang", "violation")
 
@@ -30,9 +31,9 @@ class Outcome:
 
 
 def add_options(parser):
-    parser.add_argument("--random", type=linear.count, metavar="N", help="N scenes drawn at random; scene k depends on the seed and on k alone")
+    parser.add_argument("--random", type=common.count, metavar="N", help="N scenes drawn at random; scene k depends on the seed and on k alone")
     parser.add_argument("--seed", type=int, default=1, help="seed of these scenes")
-    parser.add_argument("--jobs", type=linear.count, default=2, metavar="J", help="number of these scenes that run at the same time")
+    parser.add_argument("--jobs", type=common.count, default=2, metavar="J", help="number of these scenes that run at the same time")
 
 
 def keep_or_remove(output, scene, results, wrong):
@@ -67,10 +68,10 @@ def run_all(options, names, run_one, title, columns, again):
 
     run_one(options, k) returns an Outcome. `again` is the command that repeats a run, without the name of the
     scene."""
-    chosen = linear.matching(options, list(names), names.get)
+    chosen = common.matching(options, list(names), names.get)
     del options.refuse  # method of the parser, which cannot be pickled for another process
     for folder in ("drawn", "failures"):
-        (options.output / folder).mkdir(parents=True, exist_ok=True)
+        (options.output / folder).mkdir(exist_ok=True)
     print(title)
     outcomes = []
     with ProcessPoolExecutor(options.jobs) as pool, open(options.output / "random.csv", "w", newline="") as file:
@@ -87,5 +88,5 @@ def run_all(options, names, run_one, title, columns, again):
     total, wrong = summary(outcomes)
     refused = sum(outcome.verdict == "refused" for outcome in outcomes)
     print(f"\n{len(outcomes)} scenes{f', {refused} of them refused rightly' * bool(refused)}; random.csv, and the scenes that failed, in {options.output}")
-    print(" ".join(f"{key}={value:g}" for key, value in total.items()))
+    print(last_line(total, dict.fromkeys(total, "g")))
     return 1 if wrong else 0

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import linprog
 
-import rigid_pieces
+from perf.contact import rigid_pieces
 import violation
 
 EDGES = 32

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Writes the fracture networks of xml/contact as input of gmsh: networks.py FOLDER, then gmsh -2 on each file.
 
 The networks consist of straight fractures at random places in the unit square, split at intersections. In

@@ -4,7 +4,7 @@ All scenes have a solution: sides are fixed, or the load is a uniform pressure. 
 failure."""
 import math
 
-from random_scenes import SIDES, box, finish, given_displacement, path, random_fractures, rectangle, shape
+from perf.contact.random_scenes import SIDES, box, finish, given_displacement, path, random_fractures, rectangle, shape
 
 
 def stress_of(draw, p):

@@ -1,21 +1,16 @@
 """Runs random scenes and classifies each: ok, refused (correctly), failed, violation, or hang."""
 import numpy as np
-
-import contact
-import drawn_runs
-import limit_analysis
-import program_run
-import random_families
-import random_scenes
 import violation
-from scenes import Scene
+
+from perf.contact import contact, drawn_runs, limit_analysis, random_families, random_scenes
+from perf.contact.scenes import Scene
 
 EVERY = 10  # one scene in EVERY also runs on two ranks
 
 
-def judge(run, status, scene):
+def judge(run, scene):
     """Returns the verdict of a run on one rank and its messages."""
-    run = contact.judge(run, status)
+    run, status = contact.judge(run), run.status
     worst = 0 if run.worst is None else run.worst.max()
     wrong = [f"wrong state: violation {worst:.1e}"] if worst > contact.BOUNDS["worst_violation"] else []
     if status is None:
@@ -41,12 +36,11 @@ def end_of_failed_step(run, scene):
     return next(t for t in end * np.arange(1, steps + 1) / steps if t > reached + 1e-9 * end)
 
 
-def rank_differences(run, status, options):
+def rank_differences(run, options):
     """Returns the differences between one and two ranks, and notes on faces."""
-    other, other_status = contact.start(options, run.scene, 2)
-    other = contact.judge(other, other_status)
-    if other_status != status:
-        return [f"status {status} on one rank, {other_status} on two: {program_run.last_line(other.words)}"], []
+    other = contact.judge(contact.start(options, run.scene, 2))
+    if other.status != run.status:
+        return [f"status {run.status} on one rank, {other.status} on two: {other.last_line}"], []
     run.failures.clear()
     notes = contact.compare(run, other)
     return list(run.failures), notes
@@ -60,12 +54,12 @@ def run_one(options, k):
     if refusal:
         nothing = [drawn.name] + [None] * (len(contact.COLUMNS) - 1)
         return drawn_runs.Outcome(drawn.name, contact.line(nothing), nothing + [""] * len(violation.PARTS) + [drawn.loads], "failed", [refusal])
-    run, status = contact.start(options, Scene(drawn.name, str(scene.resolve())), 1)
+    run = contact.start(options, Scene(drawn.name, str(scene.resolve())), 1)
     ranks, notes = [], []
     try:
-        verdict, what = judge(run, status, scene)
-        if k % EVERY == 0 and status is not None:
-            ranks, notes = rank_differences(run, status, options)
+        verdict, what = judge(run, scene)
+        if k % EVERY == 0 and run.status is not None:
+            ranks, notes = rank_differences(run, options)
     except Exception as error:  # e.g. unreadable files; the other scenes continue
         verdict, what = "failed", [f"could not be judged: {type(error).__name__}: {error}"]
     run.failures = what + ranks
@@ -80,4 +74,4 @@ def main(options):
     names = {k: random_scenes.draw_scene(options.seed, k).name for k in range(options.random)}
     again = f"./sprekk perf contact --random {options.random} --seed {options.seed}"
     return drawn_runs.run_all(options, names, run_one, contact.line(contact.COLUMNS) + "  verdict",
-                              contact.COLUMNS + violation.PARTS + ("loads",), again)
+                              [*contact.COLUMNS, *violation.PARTS, "loads"], again)

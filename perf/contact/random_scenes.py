@@ -9,8 +9,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from random_joints import any_joint
-from scene_file import save
+from perf.common.scene_file import save
+from perf.contact.random_joints import any_joint
 
 ROOT = Path(__file__).resolve().parents[2]
 SIDES = ("west", "east", "south", "north", "bottom", "top")
@@ -402,7 +402,7 @@ FAMILIES = {  # (function, dimension, share)
 
 
 def families():
-    import random_families
+    from perf.contact import random_families
     return FAMILIES | random_families.FAMILIES
 
 

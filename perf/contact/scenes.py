@@ -2,7 +2,7 @@
 from dataclasses import dataclass
 from typing import Callable
 
-import exact
+from perf.contact import exact
 
 JOINT = "Materials.joint."
 STIFFNESS, FRICTION, DILATION = JOINT + "tangential stiffness", JOINT + "friction coefficient", JOINT + "dilation angle"

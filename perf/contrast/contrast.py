@@ -1,23 +1,21 @@
-#!/usr/bin/env python3
 """Krylov iterations at extreme values: stiffness of rock and joints, friction, Poisson's ratio, shape of cells.
 
 Every linear solve goes from zero to a relative residual of 1e-8."""
 import re
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "perf/krylov"))
-
-import linear  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import ROOT, STATES
+from perf.krylov import linear
 
 EDGE = 12         # cells along an edge of the box
 TIME_LIMIT = 300  # seconds per run
 BOUNDS = {"max_krylov": 40, "failures": 0}
+FORMATS = {"max_krylov": ".4g", "max_used": ".4g"}
 CELLS = {"hexahedra": "hexahedron", "tetrahedra": "tetrahedron"}
-COLUMNS = {"cells, case": "", "unknowns": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".4g", "cuts": "d", "solves": "d", "mean": ".1f",
+COLUMNS = {"cells, case": "", "unknowns": "d", **{state: ".2f" for state in STATES}, "Newton": ".4g", "cuts": "d", "solves": "d", "mean": ".1f",
            "max": ".4g", "used": ".4g", "lost": "d", "residual": ".0e", "seconds": ".1f"}
 SOFT = linear.joint(stiffness=1) + ("Materials.crack.tangential stiffness=1",)
 CLOSED = dict(xx=-0.01, yy=-0.01, zz=-0.01)
@@ -70,6 +68,11 @@ def columns():
 def found_no_state(run):
     """True if no state was found within the time limit, or at all. Other failures are not due to the scene."""
     return run.failure.startswith("no end within") or (bool(run.failure) and run.failure == run.results.get("reason"))
+
+
+def lost(run):
+    """Number of failed linear solves in abandoned attempts of Newton's method."""
+    return sum(not solve["used"] and solve["residual"] > linear.ROUNDING * linear.RESIDUAL for solve in run.solves)
 
 
 def contrast(ratio):
@@ -143,29 +146,20 @@ def draw(rows, file):
 
 
 def main(words):
-    options = linear.parser("contrast", __doc__).parse_args(words)
+    options = common.parser("contrast", __doc__).parse_args(words)
     runs = [(case, cell) for case in cases() for cell in CELLS if not options.quick or (case.quick and cell == case.quick_cells)]
-    chosen = linear.matching(options, runs, lambda run: f"{run[1]}, {run[0].name}")
-    options.output.mkdir(parents=True, exist_ok=True)
-    table, rows = linear.Table(COLUMNS, 46), []
+    chosen = common.matching(options, runs, lambda run: f"{run[1]}, {run[0].name}")
+    printed, rows = table.Table(COLUMNS, 46), []
     for case, cell in chosen:
         sets = (*linear.cells(EDGE), f"Mesh.cell={CELLS[cell]}", *case.sets)
         run = linear.run(options, sets, re.sub(r"[^\w.+-]+", "_", f"{cell} {case.name}"), time_limit=TIME_LIMIT)
         rows.append((case, cell, run))
         name = f"{'beyond: ' if case.beyond else ''}{cell}, {case.name}"
-        table.add([name, run.unknowns, *(run.fraction(state) for state in linear.STATES), run.newton, run.cuts, len(run.krylov), run.mean, run.most,
-                   run.most_used, run.lost, run.residual, sum(run.seconds(what) for what in linear.TIMERS)], [f"failed: {run.failure}"] if run.failure else ())
-    table.write(options.output / "contrast.csv")
+        printed.add([name, run.unknowns, *run.fractions, run.mean_newton, run.cuts, len(run.krylov), run.mean, run.most,
+                     run.most_used, lost(run), run.residual, run.total_time], [f"failed: {run.failure}"] if run.failure else ())
     draw(rows, options.output / "contrast.png")
-    total = {"max_krylov": max((run.most for case, _, run in rows if not case.beyond), default=0),
-             "failures": sum(bool(run.failure) and not (case.wedged and found_no_state(run)) for case, _, run in rows),
-             "max_used": max((run.most_used for case, _, run in rows if not case.beyond), default=0), "lost": sum(run.lost for *_, run in rows),
-             "unsolved": sum(case.wedged and found_no_state(run) for case, _, run in rows)}
-    wrong = linear.missed(total, BOUNDS)
-    print("\n".join(["", *wrong, f"contrast.csv and contrast.png in {options.output}"]))
-    print("max_krylov={max_krylov:.4g} failures={failures} max_used={max_used:.4g} lost={lost} unsolved={unsolved}".format(**total))
-    return 1 if total["failures"] or (options.quick and wrong) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    within = [run for case, _, run in rows if not case.beyond]
+    unsolved = sum(case.wedged and found_no_state(run) for case, _, run in rows)
+    total = {"max_krylov": max((run.most for run in within), default=0), "failures": sum(bool(run.failure) for *_, run in rows) - unsolved,
+             "max_used": max((run.most_used for run in within), default=0), "lost": sum(lost(run) for *_, run in rows), "unsolved": unsolved}
+    return table.finish(options, printed, total, FORMATS, BOUNDS) or int(total["failures"] > 0)

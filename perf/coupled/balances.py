@@ -20,9 +20,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from joint_laws import JointLaw  # in perf/contact
+from joint_laws import JointLaw
 from violation import FIRST_KINDS, HISTORIES
-from written import number, numbers
+from perf.coupled.written import number, numbers
 
 ROUNDING = 1e-8  # relative to stored fluid and heat per step; 1e-6 of it is their rounding over all cells
 LONGER = 2.4  # a step longer than LONGER times the previous one uses implicit Euler

@@ -3,8 +3,8 @@ import re
 
 import numpy as np
 
-import violation  # in perf/contact
-from balances import Balances
+import violation
+from perf.coupled.balances import Balances
 
 BALANCE = 1e-6      # relative to the largest flow of the run
 OVERSHOOT = 1e-3    # relative to the range of the given temperatures

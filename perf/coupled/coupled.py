@@ -1,28 +1,20 @@
-#!/usr/bin/env python3
 """Robustness of coupled flow, heat and deformation: runs scenes drawn at random, and checks their results."""
-import argparse
 import re
 import shutil
-import sys
 from dataclasses import dataclass, field
-from pathlib import Path
+import xml.etree.ElementTree as xml
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/krylov", "perf/contact")]
+from perf.common import options as common
+from perf.common import program, table
+from perf.common.scene_file import save
+from perf.contact import drawn_runs
+from perf.coupled import checks, coupled_scenes, differences
+from perf.coupled.written import Written
 
-import xml.etree.ElementTree as xml  # noqa: E402
-
-import checks  # noqa: E402
-import coupled_scenes  # noqa: E402
-import differences  # noqa: E402
-import drawn_runs  # noqa: E402
-import linear  # noqa: E402
-import program_run  # noqa: E402
-from scene_file import save  # noqa: E402
-from written import Written  # noqa: E402
-
-LIMITS = program_run.Limits(processor=60, clock=600)
-COLUMNS = ("scene", "cells", "steps", "median", "max", "cuts", "fluid", "energy", "overshoot", "contact", "difference", "also", "seconds")
+LIMITS = {"cpu": 60, "clock": 600}
+COLUMNS = {**dict.fromkeys(("scene", "cells", "steps", "median", "max", "cuts"), "g"),
+           **dict.fromkeys(("fluid", "energy", "overshoot", "contact", "difference"), ".0e"), "also": "", "seconds": ".1f"}
+MEASURED = list(COLUMNS)[6:11]
 AGAIN = ("2 ranks", "renamed", "restart", "3 ranks", "renumbered", "repeated")  # scene k is run in way k of these, too
 ATTEMPTS = 10
 # scenes with these messages are drawn again
@@ -44,9 +36,9 @@ def judge(ended, directory):
     """Checks exit status, balances, bounds and laws of one run."""
     run = Judged(ended)
     if ended.status is None:
-        run.wrong.append(f"no end within {LIMITS.processor} s of a processor")
+        run.wrong.append(f"no end within {LIMITS['cpu']} s of a processor")
     elif ended.status != 0:
-        run.wrong.append(f"status {ended.status}: {ended.results.get('reason') or ended.last_line}")
+        run.wrong.append(f"status {ended.status}: {ended.reason}")
     if not ended.results.get("steps") or not (directory / "bulk.pvd").is_file():
         return run
     run.written = Written(directory, ended.results)
@@ -67,18 +59,18 @@ def judge(ended, directory):
 def again(options, way, scene, directory, run):
     """Runs the scene in another way. Returns (largest difference, messages)."""
     other = directory.with_name(re.sub(r"\W", "_", way))
-    ranks, words, rename = 1, [], str
+    ranks, entries, rename = 1, (), str
     if way.endswith("ranks"):
         ranks = int(way[0])
     elif way == "renumbered":
-        words = ["--set", "Mesh.renumbering seed=7"]
+        entries = ("Mesh.renumbering seed=7",)
     elif way == "renamed":
         scene, rename = renamed(scene)
     elif way == "restart":
         return restarted(options, scene, directory, run)
-    ended = program_run.run(options.binary, scene, other, ranks, words, LIMITS)
+    ended = program.run(options.binary, scene, other, entries, ranks, **LIMITS)
     if ended.status != run.ended.status:
-        return None, [f"{way}: status {ended.status} instead of {run.ended.status}: {ended.results.get('reason') or ended.last_line}"]
+        return None, [f"{way}: status {ended.status} instead of {run.ended.status}: {ended.reason}"]
     return compared(way, run, Written(other, ended.results), 0.0 if way == "repeated" else checks.DIFFERENCE, rename)
 
 
@@ -91,7 +83,7 @@ def restarted(options, scene, directory, run):
     if len(checkpoints) < 2:
         return None, [f"restart: {len(checkpoints)} checkpoints after {len(run.ended.results['steps'])} steps"]
     shutil.rmtree(checkpoints[-1])
-    ended = program_run.run(options.binary, scene, other, 1, [*CHECKPOINTS, "--restart"], LIMITS, anew=False)
+    ended = program.run(options.binary, scene, other, CHECKPOINTS, **LIMITS, words=("--restart",), anew=False)
     if ended.status != 0 or not ended.results.get("restarts"):
         return None, [f"restart: status {ended.status}: {ended.last_line}"]
     return compared("restart", run, Written(other, ended.results), 0.0)
@@ -122,7 +114,7 @@ def renamed(scene):
     return copy, lambda name: back.get(name, name)
 
 
-CHECKPOINTS = ["--set", "Output.checkpoints.steps=1"]
+CHECKPOINTS = ("Output.checkpoints.steps=1",)
 
 
 def ways(options, k, run):
@@ -139,8 +131,8 @@ def draw_and_run(options, k):
         scene = options.output / "drawn" / f"{drawn.name}.xml"
         save(drawn.tree, scene, drawn.comment)
         directory = options.output / "runs" / drawn.name / "first"
-        words = CHECKPOINTS if options.all_ways or AGAIN[k % len(AGAIN)] == "restart" else []
-        ended = program_run.run(options.binary, scene, directory, 1, words, LIMITS)
+        entries = CHECKPOINTS if options.all_ways or AGAIN[k % len(AGAIN)] == "restart" else ()
+        ended = program.run(options.binary, scene, directory, entries, **LIMITS)
         if ended.status != 1 or not any(words in ended.words for words in NO_SCENE):
             break
     return drawn, scene, directory, ended
@@ -171,38 +163,25 @@ def run_one(options, k):
 
 def values(name, run):
     """Returns the values of COLUMNS."""
-    steps, newton = run.ended.results.get("steps", []), run.ended.newton or [0]
-    counts = [run.ended.results.get("mesh", {}).get("cells"), len(steps), sorted(newton)[len(newton) // 2], max(newton),
-              sum(step["cuts"] for step in steps)]
+    newton = run.ended.newton or [0]
+    counts = [run.ended.results.get("mesh", {}).get("cells"), len(run.ended.steps), sorted(newton)[len(newton) // 2], max(newton), run.ended.cuts]
     also = ", ".join(run.numbers.get("also", []))
-    return [name, *counts, *(run.numbers.get(key) for key in COLUMNS[6:11]), also, run.ended.seconds]
+    return [name, *counts, *(run.numbers.get(key) for key in MEASURED), also, run.ended.seconds]
 
 
 def line(row):
-    words = [v if isinstance(v, str) else "-" if v is None else f"{v:.1f}" if column == "seconds" else f"{v:.0e}" if column in COLUMNS[6:11]
-             else f"{v:g}" for column, v in zip(COLUMNS, row)]
-    return f"{words[0]:24}" + "".join(f"{word:>{max(7, len(COLUMNS[k + 1]) + 2)}}" for k, word in enumerate(words[1:11])) + f"  {words[11]:12}{words[12]:>6}"
+    *first, also, seconds = row
+    words = seconds if isinstance(seconds, str) else f"{seconds:.1f}"
+    return table.line(first, dict(list(COLUMNS.items())[:11]), width=24) + f"  {also:12}{words:>6}"
 
 
-def arguments(words):
-    parser = argparse.ArgumentParser(prog="sprekk perf coupled", description=__doc__)
+def main(words):
+    parser = common.parser("coupled", __doc__, None, "scenes", sets=False)
     drawn_runs.add_options(parser)
     parser.set_defaults(random=100)
     parser.add_argument("--all-ways", action="store_true", help="also run each scene in all other ways: on several ranks, from a checkpoint, renamed, ...")
     parser.add_argument("--trace", action="store_true", help="with --jobs 1: stop at an internal error of the checks")
-    linear.add_only(parser, "scenes")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/coupled"), metavar="DIR")
-    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
-    return parser.parse_args(words)
-
-
-def main(words):
-    options = arguments(words)
-    options.binary = options.binary.resolve()
+    options = parser.parse_args(words)
     names = {k: coupled_scenes.draw_scene(options.seed, k).name for k in range(options.random)}
     command = f"./sprekk perf coupled --random {options.random} --seed {options.seed}"
     return drawn_runs.run_all(options, names, run_one, line(COLUMNS) + "  verdict", COLUMNS, command)
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

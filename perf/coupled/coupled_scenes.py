@@ -1,15 +1,10 @@
 """Random scenes of flow, heat and deformation. Scene k of a seed depends only on these two numbers."""
 import math
 import random
-import sys
-from dataclasses import dataclass, field
-from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "contact"))
-
-import random_scenes  # noqa: E402
-from random_joints import any_joint  # noqa: E402
-from random_scenes import SIDES, Drawn, box, rectangle, shape, turned  # noqa: E402
+from perf.contact import random_scenes
+from perf.contact.random_joints import any_joint
+from perf.contact.random_scenes import SIDES, Drawn, box, rectangle, shape, turned
 
 PHYSICS = {"flow": 12, "heat": 8, "flow-heat": 15, "thermoelastic": 8, "poro": 27, "thm": 30}  # with their shares
 WATER = {"viscosity": 1e-3, "density": 1000.0}

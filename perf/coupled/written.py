@@ -1,16 +1,13 @@
 """States written by a run, as arrays: cells, fracture faces, and the volumes swept by the faces of cells."""
 import math
-import sys
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "apps/plot"))
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import read  # noqa: E402  in apps/plot
+import read
 
 SIMPLEX = {5: 2, 22: 2, 10: 3, 24: 3}  # VTK type: dimension; all others are parallelepipeds
 DIMENSION = {5: 2, 22: 2, 9: 2, 28: 2, 10: 3, 24: 3, 12: 3, 29: 3}

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Measured and computed joints: laws are fitted to a part of an experiment and predict the remaining part.
 
 Injection-shear tests of Ye and Ghassemi (2018), specimens SW-S4 (saw cut) and SW-T2 (tensile fracture): the pressure rises
@@ -7,27 +6,16 @@ column of specimen and machine shears the joint under the measured effective com
 All stages are then computed with the same parameters for a specimen of poroelastic rock with injection into its fracture.
 
 The GREAT cell: strains in a sample under the loads of 16 pads, compared with those computed by another team."""
-import argparse
-import csv
-import importlib.util
-import sys
-from pathlib import Path
-
+import apps.fit.__main__ as fit
 import numpy as np
+from compare import Comparison, pair
+from measured import read
+from point import Point, Specification
 
-HERE = Path(__file__).parent
-ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "apps" / "fit"))
-spec = importlib.util.spec_from_file_location("sprekk_fit", ROOT / "apps" / "fit" / "__main__.py")
-fit = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(fit)
-
-from compare import Comparison, pair  # noqa: E402
-from measured import read  # noqa: E402
-from point import Point, Specification  # noqa: E402
-
-import great_cell  # noqa: E402
-import specimen  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import ROOT
+from perf.experiments import great_cell, specimen
 
 SCENE = ROOT / "xml" / "point" / "injection_shear.xml"
 OUTLET = 5e6  # Pa; effective stresses of the table: 30 MPa + tau tan(30 deg) - (injection pressure + 5 MPa)/2
@@ -97,10 +85,10 @@ def of_rock(name, columns, fitted, slip, options):
 
 def rows_of(name, options):
     """Returns {model: (quantity, unit, measured, computed)} of a specimen, and texts on the fitted parameters."""
-    path = HERE / f"{name}.csv"
+    path = ROOT / "perf/experiments" / f"{name}.csv"
     columns = read(path)
     more, texts = SPECIMENS[name]
-    point = Point(options.binary, str(SCENE), overrides_of(columns, more))
+    point = Point(str(options.binary), str(SCENE), overrides_of(columns, more))
     named = [fit.parameter(text, point, Specification(point)) for text in texts]
     outputs = point.curve({})[0]
     along = pair(path, columns, "stage=t", "along", outputs)
@@ -127,14 +115,10 @@ def relative(measured, computed, rows):
     return np.sqrt(np.mean(difference**2)), np.max(abs(difference))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", default=str(ROOT / "build/apps/sprekk/sprekk"), help="the program")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/experiments"), help="folder of the table")
+def main(words):
+    parser = common.parser("experiments", __doc__, None, None, sets=False)
     parser.add_argument("--only", choices=["great_cell", *sorted(SPECIMENS)], help="one specimen")
-    options = parser.parse_args()
-    options.output = options.output.resolve()  # paths of meshes in a scene are relative to the scene
-    options.output.mkdir(parents=True, exist_ok=True)
+    options = parser.parse_args(words)
     names = [options.only] if options.only else ["great_cell", *sorted(SPECIMENS)]
     near = "great_cell" not in names or great_cell.run(options)
     injected = [name for name in names if name in SPECIMENS]
@@ -148,24 +132,17 @@ def injection_tests(options, names):
         models, told = rows_of(name, options)
         print(name, *told, sep="\n  ")
         rows = [(model, *row) for model, quantities in models.items() for row in quantities]
-        with open(options.output / f"{name}.csv", "w", newline="") as file:
-            table = csv.writer(file)
-            table.writerow(["stage (-)"] + [f"{model}: {q} {kind} ({u})" for model, q, u, _, _ in rows for kind in ("measured", "computed")])
-            table.writerows(np.column_stack([np.arange(11)] + [v for row in rows for v in row[3:]]).tolist())
+        titles = [f"{model}: {q} {kind} ({u})" for model, q, u, _, _ in rows for kind in ("measured", "computed")]
+        table.write(options.output / f"{name}.csv", ["stage (-)", *titles],
+                    np.column_stack([np.arange(11)] + [v for row in rows for v in row[3:]]).tolist())
         rising = np.arange(11) <= LAST_RISING
         for model, quantity, _, measured, computed in rows:
             fitted, predicted = (relative(measured, computed, which) for which in (rising, ~rising))
             summary.append((name, model, quantity, *fitted, *predicted))
-    with open(options.output / "experiments.csv", "w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(["specimen", "model", "quantity", "rising rms", "rising largest", "falling rms", "falling largest"])
-        table.writerows(summary)
+    titles = ["specimen", "model", "quantity", "rising rms", "rising largest", "falling rms", "falling largest"]
+    table.write(options.output / "experiments.csv", titles, summary)
     print(f"{'specimen':10}{'model':8}{'quantity':25}{'rising rms':>12}{'largest':>10}{'falling rms':>13}{'largest':>10}   (% of the range)")
     for name, model, quantity, *values in summary:
         a, b, c, d = (f"{100 * v:.1f}" if np.isfinite(v) else "-" for v in values)
         print(f"{name:10}{model:8}{quantity:25}{a:>12}{b:>10}{c:>13}{d:>10}")
     return all(fitted < WORST_FIT for _, model, _, fitted, *_ in summary if model == "point")
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,19 +3,12 @@
 M1 is the intact sample, M2a has a through-going fracture, M2b a fracture that extends 40 mm from the centre.
 Pads press on the sheath; opposite pads have the same load. Loads B and C are load A rotated by 45 and 90
 degrees, without rotation of the fracture."""
-import csv
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
+import read
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "apps/plot"))
+from perf.common import program, table
 
-import read  # noqa: E402
-
-SCENE = ROOT / "xml/networks/great_cell_2d.xml"
+SCENE = "networks/great_cell_2d.xml"
 RADIUS = 0.065                  # of the circle, m
 SIZES = (0.004, 0.002)          # of cells, m
 LOADS = (10, 6.64, 4.46, 1.17, 1, 3.82, 7.8, 9.95)  # MPa; pads 1 to 8 clockwise from the x axis, load A
@@ -55,17 +48,11 @@ def strains(directory, size, young, poisson):
 
 def computed(options, rock, case, load, size):
     """Runs a case; returns the strains in 1e-4."""
-    *elastic, entries = ROCKS[rock]
+    *elastic, own = ROCKS[rock]
     directory = options.output / f"great_cell/{rock}_{case}_{load}_{1e3 * size:g}mm"
-    directory.mkdir(parents=True, exist_ok=True)
-    mesh = directory / "cell.msh"
-    words = [word for path, value in {**entries, **CASES[case], "Tables.load.values": pads(load), "Mesh file.network.size": size}.items()
-             for word in ("--set", f"{path}={value}")]
-    for command in ([sys.executable, "-B", str(ROOT / "apps/mesh"), "--program", options.binary, str(SCENE), "-o", str(mesh), "--quiet", *words],
-                    [options.binary, "run", str(SCENE), "--output", str(directory), "--set", f"Mesh file.path={mesh}", *words]):
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            sys.exit(done.stderr.strip())
+    entries = [f"{path}={value}" for path, value in {**own, **CASES[case], "Tables.load.values": pads(load), "Mesh file.network.size": size}.items()]
+    mesh = program.mesh(options.binary, SCENE, directory / "cell.msh", entries)
+    program.succeeded(options.binary, SCENE, directory, (f"Mesh file.path={mesh}", *entries), anew=False)
     return 1e4 * strains(directory, size, *elastic)
 
 
@@ -89,8 +76,5 @@ def run(options):
         off = abs(rows[f"{rock} M1 A"] - known) / np.max(np.abs(known))
         worst = max(worst, off.max())
         print(f"{rock} M1 A differs from LBNL by {100 * np.sqrt(np.mean(off**2)):.1f} % rms, {100 * off.max():.1f} % at most, of the largest")
-    with open(options.output / "great_cell.csv", "w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(columns)
-        table.writerows(zip(*columns.values()))
+    table.write(options.output / "great_cell.csv", columns, zip(*columns.values()))
     return worst < WORST

@@ -3,17 +3,14 @@ plane strain.
 
 Friction of the joint and stiffness of specimen and machine are the values fitted at a point. The hydraulic
 opening of the joint has three coefficients, fitted to the flow of the rising stages."""
-import json
 import math
-import subprocess
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-SCENE = ROOT / "xml/poro/injection_shear_2d.xml"
+from perf.common import program
+
+SCENE = "poro/injection_shear_2d.xml"
 ANGLE = math.radians(30)       # between fracture and axis
 ROCK, POISSON = 67e9, 0.32     # Young's modulus, Pa; Poisson's ratio, -
 CONFINED = 30e6                # Pa
@@ -42,7 +39,7 @@ def aperture(columns, slip, hydraulic, rising, outlet):
 
 
 def entries(specimen, shear, wide, dilation, closes):
-    """Arguments --set of the scene. `shear` is the shear stress of the first stage, `dilation` a tangent."""
+    """Entries of the scene. `shear` is the shear stress of the first stage, `dilation` a tangent."""
     axial = specimen.stiffness / (math.sin(ANGLE) * math.cos(ANGLE)**2)  # axial stiffness of specimen and machine
     machine = 1 / (1 / axial - specimen.length * (1 - POISSON**2) / ROCK)
     rise = WIDTH / math.tan(ANGLE)
@@ -59,19 +56,13 @@ def entries(specimen, shear, wide, dilation, closes):
               "Materials.saw cut.dilation angle": math.degrees(math.atan(dilation)),
               "Materials.saw cut.normal stiffness": 1 / closes if closes > 1 / STIFF else STIFF}
     values.update({f"Materials.saw cut.{name}": value for name, value in specimen.joint.items()})
-    return [word for path, value in values.items() for word in ("--set", f"{path}={value}")]
+    return [f"{path}={value}" for path, value in values.items()]
 
 
-def run(binary, directory, words):
+def run(binary, directory, entries):
     """Runs the scene; returns {quantity: values at the stage ends} with the signs of the tables."""
-    directory.mkdir(parents=True, exist_ok=True)
-    mesh = directory / "specimen.msh"
-    for command in ([sys.executable, "-B", str(ROOT / "apps/mesh"), "--program", binary, str(SCENE), "-o", str(mesh), "--quiet", *words],
-                    [binary, "run", str(SCENE), "--output", str(directory), "--set", f"Mesh file.path={mesh}", *words]):
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            sys.exit(done.stderr.strip())
-    steps = json.loads((directory / "results.json").read_text())["steps"]
+    mesh = program.mesh(binary, SCENE, directory / "specimen.msh", entries)
+    steps = program.succeeded(binary, SCENE, directory, (f"Mesh file.path={mesh}", *entries), anew=False).steps
     ends = [step for step in steps if abs(step["time"] / STAGE - round(step["time"] / STAGE)) < 1e-9]
     cut = [step["fractures"]["cut"] for step in ends]
     traction = np.array([face["mean_traction"]["local"] for face in cut])

@@ -1,23 +1,22 @@
-#!/usr/bin/env python3
 """Krylov iterations of the pressure from ten thousand to a million cells: rock with fractures that cross, and extremes of permeability.
 
 Every linear solve goes from zero to a relative residual of 1e-8."""
 import re
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "perf/krylov"))
+import numpy as np
 
-import linear  # noqa: E402
-import numpy as np  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import Run
+from perf.krylov import linear
 
 MESHES = {  # shape: scene, cells along an edge for about 1e4, 1e5 and 1e6 cells
     "triangles": ("flow_2d", "triangle", (72, 222, 708)), "quadrilaterals": ("flow_2d", "quadrilateral", (102, 318, 1002)),
     "tetrahedra": ("flow_3d", "tetrahedron", (12, 24, 54)), "hexahedra": ("flow_3d", "hexahedron", (24, 48, 102))}
 STEADY = ("Time.maximum halvings=0",)  # shorter steps have no effect
 BOUNDS = {"krylov_max": 15, "krylov_growth": 0.3, "failures": 0, "exponent": 1.1}
+FORMATS = {"krylov_max": ".4g", "krylov_growth": ".2f", "exponent": ".2f"}
 COLUMNS = {"cells, case": "", "cells": "d", "unknowns": "d", "solves": "d", "first": "d", "iterations": "d", "residual": ".0e",
            "set-up s": ".2f", "assembly s": ".2f", "solve s": ".2f", "kB/cell": ".1f"}
 
@@ -60,22 +59,16 @@ class Row:
     mesh: str
     case: str
     level: int
-    run: linear.Run
+    run: Run
 
     @property
-    def cells(self):
-        return self.run.results.get("mesh", {}).get("cells", 0)
-
-    @property
-    def seconds(self):
-        return sum(self.run.seconds(what) for what in linear.TIMERS)
+    def series(self):
+        return f"{self.mesh}, {self.case}"
 
     def values(self):
-        blocks = self.run.results["blocks"]
-        eliminated = {name for group in blocks.get("local_groups", []) for name in group["blocks"]}
-        unknowns = sum(field["unknowns"] for field in blocks["fields"] if field["name"] not in eliminated)
-        return [f"{self.mesh}, {self.case}", self.cells, unknowns, len(self.run.krylov), int(self.run.krylov[0]), int(self.run.most), first_residual(self.run), *(self.run.seconds(what) for what in linear.TIMERS),
-                self.run.bytes[0] / 1e3 / max(1, self.cells)]
+        run = self.run
+        return [self.series, run.cells, run.system, len(run.krylov), int(run.krylov[0]), int(run.most), first_residual(run), *run.times,
+                run.bytes[0] / 1e3 / max(1, run.cells)]
 
 
 def first_residual(run):
@@ -83,39 +76,22 @@ def first_residual(run):
     return next((solve["residual"] for step in run.steps for solve in step["linear_solves"]), None)
 
 
-def growth(rows):
-    """Relative growth of the mean number of iterations from the coarsest to the finest level, over the series that
-    ran on both."""
-    levels = sorted({row.level for row in rows})
-    if len(levels) == 1:
-        return float("nan")
-    first, last = ({(row.mesh, row.case): row.run.most for row in rows if row.level == level} for level in (levels[0], levels[-1]))
-    both = first.keys() & last.keys()
-    return sum(last[s] for s in both) / sum(first[s] for s in both) - 1 if both else float("nan")
-
-
-def exponent(rows):
-    """Exponent p of seconds ~ cells^p, fitted to all series, each with its own factor."""
-    points = {}
-    for row in rows:
-        points.setdefault((row.mesh, row.case), []).append((np.log(row.cells), np.log(row.seconds)))
-    centred = [np.array(of) - np.mean(of, axis=0) for of in points.values() if len(of) > 1]
-    if not centred:
-        return float("nan")
-    x, y = np.concatenate(centred).T
-    return float(x @ y / (x @ x))
+def summary(rows):
+    return {"krylov_max": max(row.run.most for row in rows), "krylov_growth": table.growth([(row.series, row.level, row.run.most) for row in rows]),
+            "failures": sum(bool(row.run.failure) for row in rows),
+            "exponent": table.exponent([(row.series, row.run.cells, row.run.total_time) for row in rows])}
 
 
 def draw(rows, file):
     """Draws iterations and seconds against cells: a colour for each cell shape, a line for each case."""
     import style
     figure, both = style.plt.subplots(1, 2, figsize=(8, 3.4))
-    for axes, (label, what) in zip(both, (("Krylov iterations (-)", lambda row: row.run.most), ("set-up, assembly and solution (s)", lambda row: row.seconds))):
+    for axes, (label, what) in zip(both, (("Krylov iterations (-)", lambda row: row.run.most), ("set-up, assembly and solution (s)", lambda row: row.run.total_time))):
         for colour, mesh in zip(style.LINES, MESHES):
             of_mesh = [row for row in rows if row.mesh == mesh]
             for k, case in enumerate(dict.fromkeys(row.case for row in of_mesh)):
                 of = [row for row in of_mesh if row.case == case]
-                axes.plot([row.cells for row in of], [what(row) for row in of], color=colour, marker=".", linewidth=0.8, label=None if k else mesh)
+                axes.plot([row.run.cells for row in of], [what(row) for row in of], color=colour, marker=".", linewidth=0.8, label=None if k else mesh)
         axes.set(xscale="log", xlabel="cells (-)", title=label)
     both[0].set_ylim(0, None)
     both[1].set_yscale("log")
@@ -124,34 +100,18 @@ def draw(rows, file):
 
 
 def main(words):
-    parser = linear.parser("flow", __doc__)
+    parser = common.parser("flow", __doc__)
     parser.add_argument("--largest", type=float, default=1.1e6, metavar="N", help="no mesh with more cells than this (1.1e6)")
     options = parser.parse_args(words)
     runs = [(mesh, case, level) for level in range(1 if options.quick else 3) for mesh in MESHES for case in CASES]
     per_cell = {"triangles": (2, 2), "quadrilaterals": (1, 2), "tetrahedra": (6, 3), "hexahedra": (1, 3)}
     runs = [run for run in runs if per_cell[run[0]][0] * MESHES[run[0]][2][run[2]]**per_cell[run[0]][1] <= options.largest]
-    chosen = linear.matching(options, runs, lambda run: f"{run[0]}, {run[1]}")
-    options.output.mkdir(parents=True, exist_ok=True)
-    table, rows, failed = linear.Table(COLUMNS, 40), [], []
-    for mesh, case, level in chosen:
+    rows = table.Series(COLUMNS, 40)
+    for mesh, case, level in common.matching(options, runs, lambda run: f"{run[0]}, {run[1]}"):
         scene, shape, counts = MESHES[mesh]
         d = 2 if scene == "flow_2d" else 3
         sets = (*STEADY, f"Mesh.cell={shape}", f"Mesh.cells={{{', '.join([str(counts[level])] * d)}}}", *CASES[case](d))
         run = linear.run(options, sets, re.sub(r"[^\w.+-]+", "_", f"{mesh} {case} {counts[level]}"), scene=f"performance/{scene}.xml", residual=first_residual)
-        if run.failure:
-            failed.append(f"failed: {mesh}, {case}, {counts[level]}: {run.failure}")
-        if run.steps:
-            rows.append(Row(mesh, case, level, run))
-            table.add(rows[-1].values(), failed[-1:] if run.failure else ())
-    if not rows:
-        sys.exit("\n".join(failed))
-    table.write(options.output / "flow.csv")
-    draw(rows, options.output / "flow.png")
-    total = {"krylov_max": max(row.run.most for row in rows), "krylov_growth": growth(rows), "failures": len(failed), "exponent": exponent(rows)}
-    print("\n".join(["", *failed, f"flow.csv and flow.png in {options.output}", *linear.missed(total, {k: v for k, v in BOUNDS.items() if not np.isnan(total[k])})]))
-    print("krylov_max={krylov_max:.4g} krylov_growth={krylov_growth:.2f} failures={failures} exponent={exponent:.2f}".format(**total))
-    return 1 if failed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+        rows.run(f"{mesh}, {case}, {counts[level]}", run, Row(mesh, case, level, run))
+    rows.finish(options, summary, FORMATS, draw, BOUNDS)
+    return int(bool(rows.failed))

@@ -1,20 +1,14 @@
-#!/usr/bin/env python3
 """Injection that opens joints: Newton iterations and step reductions of injection into a network, at rates below and above the opening of joints.
 
 Steps are those of the scene. The Newton iterations of a step include those of all substeps, also of rejected ones."""
-import argparse
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/contact"), str(ROOT / "perf/krylov")]
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import contact  # noqa: E402
-import linear  # noqa: E402
-from scenes import Scene  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.contact import contact
+from perf.contact.scenes import Scene
 
 END = 20 * 3600.0  # s
 MOST = 25          # target: Newton iterations per step
@@ -67,65 +61,38 @@ def cases():
 
 def asked(run, steps):
     """Yields messages of missed targets other than failures."""
-    cuts = sum(step["cuts"] for step in run.steps)
-    if cuts > CUTS * steps:
-        yield f"{cuts} cuts in {steps} steps, required: at most one in ten"
+    if run.cuts > CUTS * steps:
+        yield f"{run.cuts} cuts in {steps} steps, required: at most one in ten"
     if max(run.newton, default=0) > MOST:
         yield f"{max(run.newton)} Newton iterations in a step, at most {MOST} required"
-
-
-def opened(run):
-    """Fraction of the fractures' area that is open at the end."""
-    fractures = run.steps[-1]["fractures"].values()
-    return sum(f["area"] * f["fraction_open"] for f in fractures) / sum(f["area"] for f in fractures)
 
 
 def row(case, solver, steps, run):
     if not run.steps or not run.steps[-1].get("fractures"):
         return [case.name, solver, steps, 0, 0, 0, 0, 0, 0, 0, run.seconds]
     worst = 0 if run.worst is None else float(run.worst.max())
-    return [case.name, solver, steps, len(run.steps), float(np.median(run.newton)), max(run.newton), sum(n > MOST for n in run.newton), sum(step["cuts"] for step in run.steps),
-            opened(run), worst, run.seconds]
-
-
-def arguments(words):
-    parser = argparse.ArgumentParser(prog="sprekk perf injection", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="four runs of ten steps; the status is also 1 above a stated bound")
-    linear.add_only(parser, "scenes")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/injection"), metavar="DIR")
-    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
-    return parser.parse_args(words)
+    return [case.name, solver, steps, len(run.steps), float(np.median(run.newton)), max(run.newton), sum(n > MOST for n in run.newton), run.cuts,
+            run.fraction("open"), worst, run.seconds]
 
 
 def main(words):
-    options = arguments(words)
+    options = common.parser("injection", __doc__, "four runs of ten steps; the status is also 1 above a stated bound", "scenes", sets=False).parse_args(words)
     chosen = [(case, *how) for case in cases() for how in RUNS]
     if options.quick:
         chosen = [(case, solver, steps) for case, solver, steps in chosen if case.network == "three" and case.permeability == 1e-17 and steps == 10
                   and case.rate in (2e-4, 5e-4) and case.joint != "hard" and solver == ("iterative" if case.joint == "mated" else "direct")]
-    chosen = linear.matching(options, chosen, lambda run: run[0].scene(*run[1:]).name)
-    options.output.mkdir(parents=True, exist_ok=True)
-    table, runs, beyond = linear.Table(COLUMNS, 38), [], []
+    chosen = common.matching(options, chosen, lambda run: run[0].scene(*run[1:]).name)
+    printed, runs, beyond = table.Table(COLUMNS, 38), [], []
     for case, solver, steps in chosen:
-        run = contact.judge(*contact.start(options, case.scene(solver, steps), 1))
+        run = contact.judge(contact.start(options, case.scene(solver, steps), 1))
         if run.worst is not None and run.worst.max() > contact.BOUNDS["worst_violation"]:
             run.failures.append(f"a law is violated by {run.worst.max():.0e}")
-        table.add(row(case, solver, steps, run), run.failures)
+        printed.add(row(case, solver, steps, run), run.failures)
         runs.append(run)
-        beyond += [f"{run.scene.name}: {what}" for what in asked(run, steps)]
-    table.write(options.output / "injection.csv")
+        beyond += [f"requirement not met: {run.scene.name}: {what}" for what in asked(run, steps)]
     newton = [n for run in runs for n in run.newton]
     total = {"failures": sum(bool(run.failures) for run in runs), "newton_median": np.median(newton or [np.nan]), "newton_max": max(newton, default=0),
-             "cuts": sum(step["cuts"] for run in runs for step in run.steps)}
-    print(f"\n{len({case.name for case, *_ in chosen})} scenes, {len(runs)} runs, {len(newton)} steps in {sum(run.seconds for run in runs):.0f} s; injection.csv in {options.output}")
-    for what in beyond:
-        print("requirement not met:", what)
-    above = linear.missed(total, QUICK) if options.quick and not options.only else []
-    for what in above:
-        print(what)
-    print("failures={failures} newton_median={newton_median:g} newton_max={newton_max} cuts={cuts}".format(**total))
-    return 1 if total["failures"] or above else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+             "cuts": sum(run.cuts for run in runs)}
+    print("\n".join(["", f"{len({case.name for case, *_ in chosen})} scenes, {len(runs)} runs, {len(newton)} steps in {sum(run.seconds for run in runs):.0f} s", *beyond]))
+    bounds = QUICK if options.quick and not options.only else {}
+    return table.finish(options, printed, total, {"newton_median": "g"}, bounds) or int(total["failures"] > 0)

@@ -1,31 +1,23 @@
-#!/usr/bin/env python3
 """Laws of joints on fracture networks: convergence of Newton's method with every law, agreement of the state with the law, and
 cost of the law compared with Coulomb friction. For anisotropic damage also: cost of a step after ten thousand steps."""
-import importlib.util
 import shutil
-import sys
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/krylov", "perf/contact", "perf/networks")]
+import numpy as np
+import violation
 
-import numpy as np  # noqa: E402
-
-import contact  # noqa: E402
-import linear  # noqa: E402
-
-specification = importlib.util.spec_from_file_location("network_runs", ROOT / "perf/networks/networks.py")
-network_runs = importlib.util.module_from_spec(specification)  # perf/contact has another module named networks
-specification.loader.exec_module(network_runs)
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import measured as measured_by
+from perf.common.program import ROOT, TIMERS
+from perf.networks import networks
 
 BOUNDS = {"newton_median": 6, "newton_max": 15, "worst_violation": 1e-8}  # limits of --quick when it serves as a test
 ASKED = {**BOUNDS, "cost": 1.3, "growth": 0.02}
 KEPT = "elastic-plastic jump: kept by laws"
 COLUMNS = {"law, network": "s", "faces": "d", "steps": "d", "median": ".1f", "max": "d", "cuts": "d", "violation": ".0e", "cost": ".2f",
            "bytes/face": "d", "history +-": ".1e"}
-PARTS = ("set-up", "assembly", "solve")  # parts of the time of a step
 TURNS, TURN = "point/damage_turns.xml", 64  # steps
 LATE = 10_000
 TIME_LIMIT = 300  # CPU seconds per run; longer runs count as failed
@@ -65,7 +57,7 @@ class Measured:
 
 def scene_with(network, law, directory):
     """Writes a copy of the network's scene with the joint of this law; returns its path."""
-    source = network_runs.scene_of(network)
+    source = networks.scene_of(network)
     tree = xml.parse(source)
     joint = tree.getroot().find("./ParameterList[@name='Materials']/ParameterList[@name='joint']")
     for entry in list(joint):
@@ -82,23 +74,22 @@ def scene_with(network, law, directory):
 def measured(options, network, mesh, law):
     """Runs one law on one network and checks the state against the law."""
     scene = scene_with(network, law, mesh.parent)
-    run = network_runs.start(options, replace(network, name=f"{law}, {network.name}", file=str(scene)), mesh, 1, directory=law.replace(" ", "_"))
-    timing, steps = run.results.get("timing", {}), max(1, len(run.steps))
-    names = [name for part in PARTS for name in linear.TIMERS[part]]
-    found = Measured(run, sum(timing[name]["cpu_seconds"] for name in names if name in timing) / steps)
+    run = networks.start(options, replace(network, name=f"{law}, {network.name}", file=str(scene)), mesh, 1, directory=law.replace(" ", "_"), limit=TIME_LIMIT)
+    phases = [name for names in TIMERS.values() for name in names]
+    found = Measured(run, run.time(*phases, clock="cpu_seconds") / max(1, len(run.steps)))
     if not run.failures:
-        *_, run.worst, _ = contact.violation.largest(run.directory, run.results, contact.violation.Input(run.directory / "effective_input.xml"))
+        *_, run.worst, _ = violation.largest(run.directory, run.results, violation.Input(run.directory / "effective_input.xml"))
         if run.worst.max() > ASKED["worst_violation"]:
-            part = contact.violation.PARTS[int(run.worst.argmax())]
+            part = violation.PARTS[int(run.worst.argmax())]
             run.failures.append(f"the law is violated by {run.worst.max():.1e} ({part})")
     return found
 
 
 def add_row(table, name, found, cost):
     run = found.run
-    told, (size, bound) = linear.Run(run.results), found.history
+    size, bound = found.history
     table.add([name, run.results.get("mesh", {}).get("fracture_faces"), len(run.steps), float(np.median(run.newton)) if run.newton else None,
-               max(run.newton, default=None), told.cuts, None if run.worst is None else float(run.worst.max()), cost, size, bound], run.failures)
+               max(run.newton, default=None), run.cuts, None if run.worst is None else float(run.worst.max()), cost, size, bound], run.failures)
 
 
 def growth(options):
@@ -106,7 +97,7 @@ def growth(options):
     steps.
 
     The first turn is no reference: its few stored directions make steps less expensive."""
-    told = linear.measured(options, TURNS, (f"Time.end={LATE / TURN}", f"Time.steps={LATE}"), 1)
+    told = measured_by(options, TURNS, (f"Time.end={LATE / TURN}", f"Time.steps={LATE}"), 1)
     print("\nanisotropic damage at a point, a path that turns; microseconds of the processor and evaluations of a step:\n" +
           "\n".join(f"  {words:<28}{1e6 * told[turn]['seconds']:6.2f}{told[turn]['evaluations']:7.2f}" for turn, words in (
               ("first", "the turn after step 10"), ("second", f"the turn after step {10 + TURN}"), ("late", f"turns after step {LATE}"))), flush=True)
@@ -114,37 +105,28 @@ def growth(options):
 
 
 def main(arguments):
-    parser = linear.parser("laws", __doc__)
-    parser.add_argument("--program", type=Path, default=ROOT / "build/perf/laws/laws", help="the compiled laws.cpp")
+    parser = common.parser("laws", __doc__)
+    parser.add_argument("--program", type=common.absolute, default=ROOT / "build/perf/laws/laws", help="the compiled laws.cpp")
     options = parser.parse_args(arguments)
-    options.output = options.output.resolve()
-    network_runs.TIME_LIMIT = TIME_LIMIT
-    chosen = linear.matching(options, list(LAWS))
-    options.output.mkdir(parents=True, exist_ok=True)
-    table, found = linear.Table(COLUMNS, width=46), {}
-    for network in network_runs.networks():
+    chosen = common.matching(options, list(LAWS))
+    printed, found = table.Table(COLUMNS, width=46), {}
+    for network in networks.networks():
         if options.quick and not network.quick:
             continue
-        mesh, _ = network_runs.made(options, network)
+        mesh, _ = networks.made(options, network)
         for law in dict.fromkeys(["Coulomb", *chosen]):
             one = found.setdefault(law, {})[network.name] = measured(options, network, mesh, law)
-            add_row(table, f"{law}, {network.name}", one, one.seconds / found["Coulomb"][network.name].seconds)
-    table.write(options.output / "laws.csv")
+            add_row(printed, f"{law}, {network.name}", one, one.seconds / found["Coulomb"][network.name].seconds)
     costs = {law: float(np.median([one.seconds / found["Coulomb"][name].seconds for name, one in runs.items()])) for law, runs in found.items()}
     runs = [one.run for each in found.values() for one in each.values()]
-    failed = [f"{run.scene.name}: {what}" for run in runs for what in run.failures]
+    failed = [f"failed: {run.scene.name}: {what}" for run in runs for what in run.failures]
     newton = [count for run in runs for count in run.newton]
     print("\nmedian over the networks of the seconds of a step, of Coulomb's:\n" +
           "\n".join(f"  {law:<28}{cost:6.2f}  newton_median={np.median([n for one in found[law].values() for n in one.run.newton]):g}"
                     for law, cost in costs.items()))
-    values = {"newton_median": float(np.median(newton)), "newton_max": max(newton, default=0), "cost": max(costs.values()),
-              "worst_violation": max((float(run.worst.max()) for run in runs if run.worst is not None), default=np.inf), "growth": growth(options)}
-    missed = linear.missed(values, ASKED)
-    print("\n".join(["", *(f"failed: {what}" for what in failed), *missed]))
-    print(f"failures={len(failed)} newton_median={values['newton_median']:g} newton_max={values['newton_max']} "
-          f"worst_violation={values['worst_violation']:.1e} cost={values['cost']:.2f} growth={values['growth']:.3f}")
-    return 1 if failed or (options.quick and linear.missed({name: values[name] for name in BOUNDS}, BOUNDS)) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    values = {"failures": len(failed), "newton_median": float(np.median(newton)), "newton_max": max(newton, default=0),
+              "worst_violation": max((float(run.worst.max()) for run in runs if run.worst is not None), default=np.inf),
+              "cost": max(costs.values()), "growth": growth(options)}
+    formats = {"newton_median": "g", "worst_violation": ".1e", "cost": ".2f", "growth": ".3f"}
+    table.finish(options, printed, values, formats, ASKED, failed)
+    return int(bool(failed or (options.quick and table.missed(values, BOUNDS))))

@@ -1,15 +1,10 @@
-#!/usr/bin/env python3
 """Seconds and memory for meshes that one rank generates and distributes, and for the same meshes refined by all ranks.
 
 meshing.cpp only generates the mesh of a scene."""
-import sys
-
-from pathlib import Path
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "perf/krylov"))
-
-import linear  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import measured
+from perf.krylov import linear
 
 SCENE = "seed/immersed_3d.xml"
 EDGE, QUICK = 72, 12  # cubes along an edge of the box: 2.2 million and 10 thousand tetrahedra
@@ -18,7 +13,7 @@ COLUMNS = {"mesh": "", "million cells": ".3f", "million nodes": ".3f", "of a ran
 
 def run(options, edge, refinements, ranks):
     coarse = edge >> refinements
-    return linear.measured(options, SCENE, (*linear.cells(coarse), f"Mesh.refinements={refinements}"), ranks)
+    return measured(options, SCENE, (*linear.cells(coarse), f"Mesh.refinements={refinements}"), ranks)
 
 
 def row(name, found):
@@ -31,30 +26,25 @@ def row(name, found):
 
 
 def main(words):
-    parser = linear.parser("meshing", __doc__, program=True)
-    parser.add_argument("--edge", type=linear.count, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
-    parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="ranks of the rows on several ranks (2)")
+    parser = common.parser("meshing", __doc__, program=True)
+    parser.add_argument("--edge", type=common.count, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
+    parser.add_argument("--ranks", type=common.count, default=2, metavar="N", help="ranks of the rows on several ranks (2)")
     options = parser.parse_args(words)
     edge = options.edge or (QUICK if options.quick else EDGE)
     rows = {f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once"): (refinements, ranks)
             for ranks in sorted({1, options.ranks}) for refinements in ((0, 1, 2) if options.quick else (0, 2, 3))}
-    chosen = linear.matching(options, rows)
-    options.output.mkdir(parents=True, exist_ok=True)
-    table, cells = linear.Table(COLUMNS, 32), set()
+    chosen = common.matching(options, rows)
+    printed, cells = table.Table(COLUMNS, 32), set()
     for name in chosen:
         found = run(options, edge, *rows[name])
         cells.add((found["cells"], found["nodes"], found["fracture_faces"]))
-        table.add(row(name, found))
-    table.write(options.output / "meshing.csv")
+        printed.add(row(name, found))
+    printed.write(options.output / "meshing.csv")
     print(f"\nmeshing.csv in {options.output}")
     if len(cells) > 1:
         print(f"missed: the meshes differ in size: {sorted(cells)}")
-    return 1 if len(cells) != 1 else 0
+    return int(len(cells) > 1)
 
 
 def counted(n, what):
     return f"{n} {what}" + ("s" if n > 1 else "")
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import read       # in apps/plot
-import violation  # in perf/contact
+import read
+import violation
 
 AXES = {"west": (0, 0), "east": (0, 1), "south": (1, 0), "north": (1, 1), "bottom": (2, 0), "top": (2, 1)}  # (axis, upper end)
 NEAR = 1e-9  # relative to the domain size: nodes within this distance lie on a side

@@ -1,23 +1,17 @@
-#!/usr/bin/env python3
 """Contact on fracture networks: compressed, then sheared in ten steps with friction, tangential stiffness, dilation and
 closure. Checks the convergence of Newton's method, equal results on any number of ranks, and the balances of forces,
 moments and energy."""
-import argparse
 import json
-import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/krylov", "perf/contact")]
+import numpy as np
+import violation
 
-import numpy as np  # noqa: E402
-
-import balance  # noqa: E402
-import contact  # noqa: E402
-import linear  # noqa: E402
-import scale  # noqa: E402
+from perf.common import options as common
+from perf.common import program, table
+from perf.contact import contact
+from perf.networks import balance, scale
 
 TIME_LIMIT = 3600  # CPU seconds per run
 STEPS = 11           # steps of the scenes: one of compression, ten of shear
@@ -59,34 +53,22 @@ def networks():
 def made(options, network):
     """Generates the mesh of the network; returns the file and the number of fractures."""
     mesh = options.output / network.name.replace(" ", "_").replace(",", "") / "network.msh"
-    mesh.parent.mkdir(parents=True, exist_ok=True)
-    command = [sys.executable, "-B", str(ROOT / "apps/mesh"), "--program", str(options.binary), str(scene_of(network)), "-o", str(mesh), "--quiet"]
-    done = linear.started(command + words(network.sets + tuple(options.set)))
-    if done.returncode:
-        sys.exit(done.stderr.strip())
+    program.mesh(options.binary, scene_of(network), mesh, network.sets + tuple(options.set))
     return mesh, sum(s["fractures"] for s in json.loads(Path(f"{mesh}.json").read_text())["sets"].values())
 
 
 def scene_of(network):
-    return ROOT / "xml/networks" / network.file  # or `file` itself, if its path is absolute
+    return program.ROOT / "xml/networks" / network.file  # or `file` itself, if its path is absolute
 
 
-def words(entries):
-    return [word for entry in entries for word in ("--set", entry)]
-
-
-def start(options, network, mesh, ranks, *sets, directory=None):
+def start(options, network, mesh, ranks, *sets, directory=None, limit=TIME_LIMIT):
     """Runs the network and adds messages of failures."""
-    run = Run(network, mesh.parent / (directory or "_".join(str(value).replace("=", "_") for value in (ranks, *sets)).replace(" ", "_")))
+    folder = mesh.parent / (directory or "_".join(str(value).replace("=", "_") for value in (ranks, *sets)).replace(" ", "_"))
     entries = network.sets + tuple(options.set) + (f"Mesh file.path={mesh}", *sets)
-    command = [str(options.binary), "run", str(scene_of(network)), "--output", str(run.directory)] + words(entries)
-    begin = time.monotonic()
-    done = linear.started(["prlimit", f"--cpu={TIME_LIMIT}", *linear.on_ranks(ranks, command)])
-    run.seconds = time.monotonic() - begin
-    file = run.directory / "results.json"
-    run.results = json.loads(file.read_text()) if file.is_file() else {}
-    if done.returncode:
-        run.failures.append(f"on {ranks} ranks: {contact.last_line(done.stdout + done.stderr)}")
+    run = program.run(options.binary, scene_of(network), folder, entries, ranks, cpu=limit, clock=10 * limit, kind=Run)
+    run.scene = network
+    if run.status != 0:
+        run.failures.append(f"on {ranks} ranks: {run.last_line}")
     elif not all(step["converged"] for step in run.steps):
         run.failures.append(f"on {ranks} ranks: a step did not converge")
     return run
@@ -95,8 +77,8 @@ def start(options, network, mesh, ranks, *sets, directory=None):
 def judge(run):
     """Checks balances and contact laws of a successful run."""
     run.budget = balance.budget(run.directory, run.results)
-    run.faces, run.scales, run.worst, _ = contact.violation.largest(
-        run.directory, run.results, contact.violation.Input(run.directory / "effective_input.xml"))
+    run.faces, run.scales, run.worst, _ = violation.largest(
+        run.directory, run.results, violation.Input(run.directory / "effective_input.xml"))
     if run.budget.balance > BOUNDS["balance"]:
         run.failures.append(f"forces or moments are out of balance by {run.budget.balance:.1e} of the largest reaction")
     if run.budget.least_heat < LEAST_HEAT:
@@ -120,10 +102,10 @@ def measured(options, network, table):
             notes = contact.compare(run, other)
             if run.newton != other.newton:
                 notes.append(f"  Newton iterations on {options.ranks} ranks: {other.newton}, on one: {run.newton}")
-    told = linear.Run(run.results)
-    table.add([network.name, run.results.get("mesh", {}).get("dimension"), fractures, run.results.get("mesh", {}).get("fracture_faces"), told.unknowns,
-               len(run.steps), float(np.median(run.newton)) if run.newton else None, max(run.newton, default=None), told.cuts,
-               told.fraction("slip"), told.fraction("open"), *([run.budget.balance, float(run.worst.max()), run.budget.least_heat]
+    mesh = run.results.get("mesh", {})
+    table.add([network.name, mesh.get("dimension"), fractures, mesh.get("fracture_faces"), run.unknowns,
+               len(run.steps), float(np.median(run.newton)) if run.newton else None, max(run.newton, default=None), run.cuts,
+               run.fraction("slip"), run.fraction("open"), *([run.budget.balance, float(run.worst.max()), run.budget.least_heat]
                                                               if run.budget else [None] * 3), run.seconds], [*run.failures, *notes])
     return run
 
@@ -149,35 +131,20 @@ def energies(options, network):
 
 
 def main(arguments):
-    parser = linear.parser("networks", __doc__)
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.add_argument("--ranks", type=linear.count, default=2, metavar="N", help="also run on N ranks, and compare (2)")
+    parser = common.parser("networks", __doc__)
+    parser.add_argument("--ranks", type=common.count, default=2, metavar="N", help="also run on N ranks, and compare (2)")
     parser.add_argument("--scale", action="store_true", help="instead: cost per unknown of networks of 50 to 2000 fractures, compared with blocks")
     parser.add_argument("--seed", type=int, default=1, help="seed of --scale")
     options = parser.parse_args(arguments)
-    options.output = options.output.resolve()
     if options.scale:
-        options.output.mkdir(parents=True, exist_ok=True)
         return scale.measure(options, lambda of, sets: made(options, Network(of.name, of.file, sets)), options.seed)
-    chosen = linear.matching(options, [n for n in networks() if n.quick or not options.quick], lambda network: network.name)
-    options.output.mkdir(parents=True, exist_ok=True)
-    table = linear.Table(COLUMNS, width=24)
-    runs = [measured(options, network, table) for network in chosen]
-    table.write(options.output / "networks.csv")
-    failed = [f"{run.scene.name}: {what}" for run in runs for what in run.failures]
+    chosen = common.matching(options, [n for n in networks() if n.quick or not options.quick], lambda network: network.name)
+    printed = table.Table(COLUMNS, width=24)
+    runs = [measured(options, network, printed) for network in chosen]
+    failed = [f"failed: {run.scene.name}: {what}" for run in runs for what in run.failures]
     for name in ("outcrop 2D",) if options.quick else ("outcrop 2D", "shapes 3D"):
-        failed += [what for run in runs if run.scene.name == name for what in energies(options, run.scene)]
+        failed += [f"failed: {what}" for run in runs if run.scene.name == name for what in energies(options, run.scene)]
     newton = [count for run in runs for count in run.newton]
-    values = {"newton_median": np.median(newton), "newton_max": max(newton, default=0),
+    values = {"networks": len(runs), "failures": len(failed), "newton_median": np.median(newton), "newton_max": max(newton, default=0),
               "balance": max((run.budget.balance for run in runs if run.budget), default=np.inf)}
-    missed = linear.missed(values, BOUNDS)
-    print()
-    for what in [f"failed: {what}" for what in failed] + missed:
-        print(what)
-    print(f"networks={len(runs)} failures={len(failed)} newton_median={values['newton_median']:g} newton_max={values['newton_max']} "
-          f"balance={values['balance']:.0e}")
-    return 1 if failed or (options.quick and missed) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    return table.finish(options, printed, values, {"newton_median": "g", "balance": ".0e"}, BOUNDS, failed)

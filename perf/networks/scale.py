@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import krylov
-import linear
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import STATES, Run
+from perf.krylov import krylov, linear
 
 STEPS = 4     # of the scene: one of compression, the others of shear
 DRAINED = 1e5  # step with flow, s: in shorter steps the undrained pressure dominates
@@ -19,7 +21,7 @@ FLOW = ("Materials.granite.type=elastic", "Materials.granite.Young's modulus=50 
         "Boundary conditions.outlet.boundary=south", "Boundary conditions.outlet.pressure=0")
 BOUNDS = {"krylov_max": 30, "newton_median": 6, "newton_max": 12, "seconds_over_blocks": 1.5, "bytes_over_blocks": 1.4, "exponent": 1.1}
 QUICK_BOUNDS = {name: BOUNDS[name] for name in ("krylov_max", "newton_median", "newton_max")}
-COLUMNS = {"scene": "", "fractures": "d", "unknowns": "d", "of tips": "d", **{state: ".2f" for state in linear.STATES}, "Newton": ".3g", "most": "d",
+COLUMNS = {"scene": "", "fractures": "d", "unknowns": "d", "of tips": "d", **{state: ".2f" for state in STATES}, "Newton": ".3g", "most": "d",
            "cuts": "d", "solves": "d", "mean": ".1f", "max": ".4g", "residual": ".0e", "set-up s": ".1f", "assembly s": ".1f", "solve s": ".1f",
            "us": ".1f", "kB": ".1f"}
 
@@ -72,21 +74,16 @@ def scales():
 class Row:
     name: str
     fractures: int
-    run: linear.Run
-
-    @property
-    def newton(self):
-        return [step["newton_iterations"] for step in self.run.steps]
+    run: Run
 
     @property
     def tips(self):
-        fields = self.run.results.get("blocks", {}).get("fields", [])
-        return sum(f["unknowns"] for f in fields if f["name"] == "tip displacement")
+        return self.run.unknowns_of("tip displacement")
 
     @property
     def seconds(self):
         """Seconds per Newton iteration."""
-        return sum(self.run.seconds(what) for what in linear.TIMERS) / max(1, sum(self.newton))
+        return self.run.total_time / max(1, sum(self.run.newton))
 
     @property
     def cost(self):
@@ -97,9 +94,9 @@ class Row:
 
     def values(self):
         run, (seconds, size, _) = self.run, self.cost
-        return [self.name, self.fractures, run.unknowns, self.tips, *(run.fraction(state) for state in linear.STATES), float(np.median(self.newton)),
-                max(self.newton), run.cuts, len(run.krylov), run.mean, run.most_used, run.residual,
-                *(run.seconds(what) for what in linear.TIMERS), 1e6 * seconds, size / 1e3]
+        return [self.name, self.fractures, run.unknowns, self.tips, *run.fractions, float(np.median(run.newton)),
+                max(run.newton), run.cuts, len(run.krylov), run.mean, run.most_used, run.residual,
+                *run.times, 1e6 * seconds, size / 1e3]
 
 
 def blocks(options, unknowns):
@@ -113,33 +110,24 @@ def blocks(options, unknowns):
 def measure(options, made, seed):
     """Prints the table and the last line; returns the exit status. made(scale, sets) generates the mesh of a
     network."""
-    chosen = linear.matching(options, [s for s in scales() if s.quick or not options.quick], lambda scale: scale.name)
-    table, failed, networks, beside = linear.Table(COLUMNS, 26), [], [], {}
-
-    def show(row):
-        if row.run.failure:
-            failed.append(f"failed: {row.name}: {row.run.failure}")
-        if row.run.steps:
-            table.add(row.values(), failed[-1:] if row.run.failure else ())
-
+    chosen = common.matching(options, [s for s in scales() if s.quick or not options.quick], lambda scale: scale.name)
+    rows, networks, beside = table.Series(COLUMNS, 26), [], {}
     for scale in chosen:
         mesh, fractures = made(scale, scale.sets(seed))
         entries = (*scale.sets(seed), f"Mesh file.path={mesh}", *scale.entries())
         row = Row(scale.name, fractures, linear.run(options, entries, "run_" + scale.name.replace(" ", "_").replace(",", ""), scene=f"networks/{scale.file}"))
-        show(row)
+        rows.run(row.name, row.run, row)
         networks.append((scale, row))
         if scale.dim == 3 and not scale.flow and row.run.unknowns:
-            beside[scale.name] = blocks(options, row.run.unknowns)
-            show(beside[scale.name])
-    table.write(options.output / "scale.csv")
-    found = summary([(scale, row) for scale, row in networks if not row.run.failure], beside)
-    missed = linear.missed(found, QUICK_BOUNDS if options.quick else BOUNDS)
-    print("\n".join(["", *failed, *missed, " ".join(f"{name}={value:.3g}" for name, value in found.items()) + f" failures={len(failed)}"]))
-    return 1 if failed or (options.quick and missed) else 0
+            other = beside[scale.name] = blocks(options, row.run.unknowns)
+            rows.run(other.name, other.run, other)
+    options.name = "scale"
+    values = {**summary([(scale, row) for scale, row in networks if not row.run.failure], beside), "failures": len(rows.failed)}
+    return table.finish(options, rows, values, {name: ".3g" for name in values if name != "failures"}, QUICK_BOUNDS if options.quick else BOUNDS, rows.failed)
 
 
 def summary(networks, beside):
-    newton = [n for _, row in networks for n in row.newton]
+    newton = [n for _, row in networks for n in row.run.newton]
     both = [(row, beside[scale.name]) for scale, row in networks if scale.name in beside and not beside[scale.name].run.failure]
     ratio = [max((row.cost[k] / other.cost[k] for row, other in both), default=math.nan) for k in range(3)]
     of_size = [(math.log(row.fractures), math.log(row.seconds)) for scale, row in networks if scale.dim == 3 and not scale.flow]

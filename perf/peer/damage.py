@@ -1,13 +1,11 @@
 """Damage of a joint at a point: tractions of both programs on the same path of jumps, and the cost of late steps."""
 import csv
 import io
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 
-import linear  # in perf/krylov
+from perf.common import program, table
 
 SCENE = Path(__file__).resolve().parent / "damage.xml"
 STEPS = 16
@@ -28,11 +26,7 @@ def entries(told, dim):
 def ours(options, dim, kind, told):
     """Runs Sprekk; returns {quantity: values of all steps}."""
     sets = [f"Materials.joint.damage={kind}", f"Time.end={STEPS}", f"Time.steps={STEPS}", *entries(told, dim)]
-    done = subprocess.run([str(options.binary), "point", str(SCENE), *(word for entry in sets for word in ("--set", entry))],
-                          capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"peer: damage: {done.stderr.strip()}")
-    rows = list(csv.DictReader(io.StringIO(done.stdout)))[1:]
+    rows = list(csv.DictReader(io.StringIO(program.checked([options.binary, "point", SCENE, *program.sets(sets)]))))[1:]
     shear = ["t"] if dim == 2 else ["t1", "t2"]
 
     def size(what):
@@ -42,7 +36,7 @@ def ours(options, dim, kind, told):
 
 def compare(options, theirs):
     """Prints a row for each kind of damage; returns messages of too large differences."""
-    table, wrong = linear.Table(COLUMNS, 24), []
+    printed, wrong = table.Table(COLUMNS, 24), []
     for dim in (2, 3):
         for kind in ("isotropic", "anisotropic"):
             told, _ = theirs(options, "damage.py", dim, kind, STEPS)
@@ -51,6 +45,6 @@ def compare(options, theirs):
             seconds = np.diff([0, *(step["seconds"] for step in their)])
             solves = np.diff([0, *(step["solves"] for step in their)])
             early, late = (np.sum(seconds[part]) / np.sum(solves[part]) for part in (slice(SOME), slice(-SOME, None)))
-            table.add([f"{dim}D, {kind}", *apart.values(), early, late])
+            printed.add([f"{dim}D, {kind}", *apart.values(), early, late])
             wrong += [f"apart: damage, {dim}D, {kind}: {name} by {value:.1e}, {WITHIN} is allowed" for name, value in apart.items() if not value <= WITHIN]
     return wrong

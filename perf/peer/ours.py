@@ -1,25 +1,13 @@
 """Runs of Sprekk with costs and errors: tilted fracture, THM block, flow, and the cracks of perf/verification."""
-import json
 import math
-import os
-import resource
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
+import read
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "perf/verification"), str(ROOT / "apps/plot")]
-
-import exact  # noqa: E402
-import flow_cases  # noqa: E402
-import flow_measure  # noqa: E402
-import measure  # noqa: E402
-import meshes  # noqa: E402
-import read  # noqa: E402
-from runs import FUNCTIONALS, THERMAL, Run  # noqa: E402
+from perf.common import program
+from perf.peer.runs import FUNCTIONALS, THERMAL, Run
+from perf.verification import exact, flow_cases, flow_measure, measure, meshes
 
 COUNTED = ("mesh", "set-up", "set-up_of_the_solver", "time_steps")  # consecutive phases
 MEAN = "mean pressure"
@@ -33,20 +21,12 @@ def run(options, scene, sets, name):
     """Returns (directory, results.json, median CPU seconds): of the COUNTED phases, for adaptive runs of the whole
     process."""
     directory, seconds = options.output / name, []
-    command = [str(options.binary), "run", str(scene), "--output", str(directory)]
-    command += [word for entry in (*sets, *options.set) for word in ("--set", entry)]
     for _ in range(REPEATED):
-        shutil.rmtree(directory, ignore_errors=True)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(["timeout", "900", *command], capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                              env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"})
-        if done.returncode:
-            sys.exit(f"peer: {name}: status {done.returncode}: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
-        results = json.loads((directory / "results.json").read_text())
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        whole = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        seconds.append(whole if "accuracy" in results else sum(results["timing"][phase]["cpu_seconds"] for phase in COUNTED))
-    return directory, results, sorted(seconds)[REPEATED // 2]
+        before = program.cpu_seconds()
+        found = program.succeeded(options.binary, scene, directory, (*sets, *options.set), clock=900)
+        whole = program.cpu_seconds() - before
+        seconds.append(whole if "accuracy" in found.results else found.time(*COUNTED, clock="cpu_seconds"))
+    return directory, found.results, sorted(seconds)[REPEATED // 2]
 
 
 def to(quantity, error):
@@ -56,14 +36,12 @@ def to(quantity, error):
 
 
 def made(results, seconds, **more):
-    eliminated = {block for group in results["blocks"].get("local_groups", []) for block in group["blocks"]}
-    unknowns = sum(field["unknowns"] for field in results["blocks"]["fields"] if field["name"] not in eliminated)
-    return Run("Sprekk, adaptive" if "accuracy" in results else "Sprekk", results["mesh"]["cells"], unknowns, sum(step["newton_iterations"] for step in results["steps"]), seconds,
-               results["memory"]["peak_bytes_largest_rank"], **more)
+    found = program.Run(results=results)
+    return Run("Sprekk, adaptive" if "accuracy" in results else "Sprekk", found.cells, found.system, sum(found.newton), seconds, found.bytes[1], **more)
 
 
 def tilted(options, file, name, *sets):
-    _, results, seconds = run(options, TILTED, (f"Mesh file.path={file.resolve()}", *sets), name)
+    _, results, seconds = run(options, TILTED, (f"Mesh file.path={file}", *sets), name)
     step = results["steps"][-1]
     crack = step["fractures"]["crack"]
     traction, jump, force = crack["mean_traction"], crack["mean_jump"]["global"], step["reactions"]["top"]
@@ -73,7 +51,7 @@ def tilted(options, file, name, *sets):
 
 
 def thm(options, file, name):
-    _, results, seconds = run(options, THM, (f"Mesh file.path={file.resolve()}",), name)
+    _, results, seconds = run(options, THM, (f"Mesh file.path={file}",), name)
     step = results["steps"][-1]
     crack, force, leaves = step["fractures"]["crack"], step["reactions"]["top"], -step["inflows"]["east"]
     # heat_inflows does not include heat carried at HOT
@@ -87,7 +65,7 @@ def crack(options, mode, file, name, *sets):
     """Run with the relative errors of the jump: over all faces, and over faces at least a tenth of the half-length
     away from tips."""
     scene, known = MODES[mode]
-    directory, results, seconds = run(options, ROOT / f"xml/verification/{scene}.xml", (f"Mesh file.path={file.resolve()}", *sets), name)
+    directory, results, seconds = run(options, f"verification/{scene}.xml", (f"Mesh file.path={file}", *sets), name)
     faces = read.segments(read.grid(read.written_steps(directory, "fractures")[-1][1]))
     corners = faces.points[np.array([line[:2] for line in faces.polygons])][:, :, :2]
     size, away = measure.area(corners), np.abs(corners[:, :, 0]).max(axis=1) < 0.9
@@ -99,7 +77,7 @@ def crack(options, mode, file, name, *sets):
 def flow(options, kind, cell, n):
     """Run with the mean pressure in the rock of the regular network, with n equal cells along an edge."""
     sets = (f"Mesh.cell={cell}", f"Mesh.cells={{{n}, {n}}}", *flow_cases.JOINTS[kind])
-    directory, results, seconds = run(options, ROOT / "xml/verification/flow_regular_2d.xml", sets, f"flow_{kind}_{cell}_{n}")
+    directory, results, seconds = run(options, "verification/flow_regular_2d.xml", sets, f"flow_{kind}_{cell}_{n}")
     rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
     return made(results, seconds, values={MEAN: float(flow_measure.array(measure.Run(results, rock, None, 2), "pressure").mean())})
 

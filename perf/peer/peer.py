@@ -1,25 +1,19 @@
-#!/usr/bin/env python3
 """Sprekk compared with PorePy: seconds, memory and Newton iterations on the same meshes, and seconds for the same error.
 
 The environment variable POREPY names a checkout of PorePy; without it nothing is measured."""
-import csv
 import glob
 import json
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-sys.path.append(str(HERE.parent / "krylov"))
-
-import damage  # noqa: E402
-import linear  # noqa: E402
-import ours  # noqa: E402
-import runs  # noqa: E402
-from ours import meshes  # noqa: E402
-from runs import FUNCTIONALS, THERMAL, Run  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import ROOT, Failed, checked
+from perf.peer import damage, ours, runs
+from perf.peer.ours import meshes
+from perf.peer.runs import FUNCTIONALS, THERMAL, Run
 
 TILTED = ((0.25, 0.15), (0.22, 0.14), (0.125, 0.08), (0.09, 0.058))  # sizes of cells, and of those on the fracture
 HEAT = ((23.0, 14.5), (13.5, 8.7), (9.4, 6.0))  # sizes for thm.xml
@@ -42,21 +36,18 @@ COSTS = {"cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB
 COLUMNS = {"mesh, code": "", **COSTS, **{name: ".4f" for name in FUNCTIONALS}}
 OF_HEAT = {"mesh, code": "", **COSTS, **{name: ".4g" for name in THERMAL}}
 ERRORS = {"error, code": "", **COSTS, "rel. error": ".2e"}
-WHY = """peer: nothing to compare with: POREPY is to name a checkout of PorePy, of November 2025 if possible:
+WHY = """peer: no measurement: set POREPY to the folder of a checkout of PorePy, of November 2025 if possible:
   git clone https://github.com/pmgbergen/porepy && git -C porepy checkout 614c076c && POREPY=$PWD/porepy ./sprekk perf peer"""
 
 
 def theirs(options, script, *words):
     """Runs a script with PorePy; returns its JSON output and a function values -> Run."""
-    paths = [HERE / "theirs/compat", f"{options.porepy}/src", *glob.glob("/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")]
+    theirs = ROOT / "perf/peer/theirs"
+    paths = [theirs / "compat", ROOT, f"{options.porepy}/src", *glob.glob("/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")]
     one = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "PYTHONDONTWRITEBYTECODE")}
-    environment = {**os.environ, **one, "PYTHONPATH": ":".join(map(str, paths)), "MPLBACKEND": "Agg", "PYTHONWARNINGS": "ignore",
-                   "NUMBA_CACHE_DIR": str((options.output / "numba").resolve())}
-    done = subprocess.run([sys.executable, HERE / "theirs" / script, *map(str, words)], capture_output=True, text=True, env=environment,
-                          stdin=subprocess.DEVNULL, cwd=options.output)
-    if done.returncode:
-        sys.exit(f"peer: {script}: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
-    told = json.loads(done.stdout.strip().splitlines()[-1])
+    environment = {**one, "PYTHONPATH": ":".join(map(str, paths)), "MPLBACKEND": "Agg", "PYTHONWARNINGS": "ignore",
+                   "NUMBA_CACHE_DIR": str(options.output / "numba")}
+    told = json.loads(checked(["env", "-C", options.output, sys.executable, theirs / script, *words], **environment).strip().splitlines()[-1])
     return told, lambda values: Run("PorePy", told["cells"], told["unknowns"], told["solves"], told["cpu_seconds"], told["peak_bytes"], values)
 
 
@@ -93,8 +84,8 @@ def cells(run):
 
 
 def compare_tilted(options, count):
-    """Runs both programs on the meshes of PorePy; returns the table and {series: [run]}."""
-    table, found = linear.Table(COLUMNS, 26), {"PorePy": [], "Sprekk": [], "Sprekk, plain tips": []}
+    """Runs both programs on the meshes of PorePy; returns {series: [run]}."""
+    printed, found = table.Table(COLUMNS, 26), {"PorePy": [], "Sprekk": [], "Sprekk, plain tips": []}
     for h, on_crack in TILTED[:count]:
         made = options.output / f"porepy_{h:g}.msh"
         told, run = theirs(options, "tilted.py", h, on_crack, made.resolve())
@@ -103,20 +94,20 @@ def compare_tilted(options, count):
         found["Sprekk"].append(ours.tilted(options, file, f"tilted_{h:g}"))
         found["Sprekk, plain tips"].append(ours.tilted(options, file, f"plain_{h:g}", "Mesh file.tips=plain"))
         for code, of in found.items():
-            table.add([f"{of[-1].cells}, {code}", *cells(of[-1]), *(1e3 * of[-1].values[name] for name in FUNCTIONALS)])
-    return table, found
+            printed.add([f"{of[-1].cells}, {code}", *cells(of[-1]), *(1e3 * of[-1].values[name] for name in FUNCTIONALS)])
+    return found
 
 
 def compare_heat(options, count):
     """Runs both programs on PorePy's meshes of the block with heat and flow; returns {series: [run]}."""
-    table, found = linear.Table(OF_HEAT, 26), {"PorePy": [], "Sprekk": []}
+    printed, found = table.Table(OF_HEAT, 26), {"PorePy": [], "Sprekk": []}
     for h, on_crack in HEAT[:count]:
         made = options.output / f"porepy_thm_{h:g}.msh"
         told, run = theirs(options, "thm.py", h, on_crack, made.resolve())
         found["PorePy"].append(run(told["functionals"]))
         found["Sprekk"].append(ours.thm(options, named(made, options.output / f"thm_{h:g}.msh"), f"thm_{h:g}"))
         for code, of in found.items():
-            table.add([f"{of[-1].cells}, {code}", *cells(of[-1]), *(of[-1].values[name] for name in THERMAL)])
+            printed.add([f"{of[-1].cells}, {code}", *cells(of[-1]), *(of[-1].values[name] for name in THERMAL)])
     return found
 
 
@@ -125,7 +116,7 @@ def compare_errors(options, same, count):
 
     Returns {quantity: ([PorePy run], [Sprekk run], error)}, the same with adaptive runs of Sprekk, and the
     extrapolated mean slip."""
-    table, found = linear.Table(ERRORS, 46), {}
+    printed, found = table.Table(ERRORS, 46), {}
     fine = [ours.tilted(options, ours.tilted_mesh(options.output / "meshes", *sizes), f"fine_{k}", "Mesh file.order=2")
             for k, sizes in enumerate(FINE[:count + 1])]
     exact = runs.limit(*fine[-2:], SLIP)
@@ -148,7 +139,7 @@ def compare_errors(options, same, count):
             found[what] = (both["PorePy"], both["Sprekk"], lambda run, what=what: run.values[what])
     for what, (their, our, error) in found.items():
         for run in their + our + adaptive[what]:
-            table.add([f"{what}, {run.code}", *cells(run), error(run)])
+            printed.add([f"{what}, {run.code}", *cells(run), error(run)])
     return found, {what: (found[what][0], our, found[what][2]) for what, our in adaptive.items()}, exact
 
 
@@ -158,7 +149,7 @@ def compare_flow(options, count):
 
     Returns a dictionary as compare_errors(). The reference value is extrapolated from the last two meshes of
     Sprekk."""
-    table, found = linear.Table(ERRORS, 46), {}
+    printed, found = table.Table(ERRORS, 46), {}
     for kind in ("conductive", "blocking"):
         for scheme, cell in (("mpfa", "triangle"), ("tpfa", "quadrilateral")):
             their, our = [], [ours.flow(options, kind, cell, n) for n in FLOW["Sprekk"][:count + 1]]
@@ -170,16 +161,16 @@ def compare_flow(options, count):
             what = f"{kind}, {scheme} beside {'rt0' if cell == 'triangle' else 'tpfa'}"
             found[what] = (their, our, lambda run, exact=exact: abs(run.values[ours.MEAN] / exact - 1))
             for run in their + our:
-                table.add([f"{what}, {run.code}", *cells(run), found[what][2](run)])
+                printed.add([f"{what}, {run.code}", *cells(run), found[what][2](run)])
     return found
 
 
 def tell_apart(found):
     """Prints the differences between the programs; returns messages of too large differences."""
     apart, wrong = runs.apart(found["Sprekk"], found["PorePy"]), []
-    table = linear.Table({"apart (distances from the limit)": "", **{name: ".2f" for name in apart[0]}}, 36)
+    printed = table.Table({"apart (distances from the limit)": "", **{name: ".2f" for name in apart[0]}}, 36)
     for run, of in zip(found["Sprekk"], apart):
-        table.add([f"{run.cells} cells", *of.values()])
+        printed.add([f"{run.cells} cells", *of.values()])
         wrong += [f"apart: {name} on {run.cells} cells, {value:.2f} distances, {runs.WITHIN} are allowed" for name, value in of.items()
                   if not value <= runs.WITHIN]
     return wrong
@@ -187,11 +178,11 @@ def tell_apart(found):
 
 def tell_equal(found):
     """Prints the times at equal error; returns the smallest ratio."""
-    table, ratios = linear.Table({"at equal error": "", "their error": ".2e", "our error": ".2e", "their CPU seconds": ".3f", "our CPU seconds": ".3f", "ratio": ".0f"}, 28), []
+    printed, ratios = table.Table({"at equal error": "", "their error": ".2e", "our error": ".2e", "their CPU seconds": ".3f", "our CPU seconds": ".3f", "ratio": ".0f"}, 28), []
     for what, (their, our, error) in found.items():
         best, good = runs.at_equal_error(our, their, error)
         ratios.append(runs.ratio(best, good))
-        table.add([what, error(best), good and error(good), best.seconds, good and good.seconds, ratios[-1] if good else None])
+        printed.add([what, error(best), good and error(good), best.seconds, good and good.seconds, ratios[-1] if good else None])
     return min(ratios, key=lambda ratio: ratio if ratio == ratio else -1)
 
 
@@ -212,14 +203,10 @@ def draw(same, found, file):
 
 
 def write(file, both, found):
-    with open(file, "w", newline="") as opened:
-        writer = csv.writer(opened)
-        writer.writerow(["case", "code", "cells", "unknowns", "Newton", "CPU seconds", "MB", "quantity", "value"])
-        for case, same in both.items():
-            for code, of in same.items():
-                writer.writerows([case, code, *cells(run), name, value] for run in of for name, value in run.values.items())
-        for what, (their, our, error) in found.items():
-            writer.writerows([what, run.code, *cells(run), "relative error", error(run)] for run in their + our)
+    rows = [[case, code, *cells(run), name, value] for case, same in both.items() for code, of in same.items() for run in of
+            for name, value in run.values.items()]
+    rows += [[what, run.code, *cells(run), "relative error", error(run)] for what, (their, our, error) in found.items() for run in their + our]
+    table.write(file, ["case", "code", "cells", "unknowns", "Newton", "CPU seconds", "MB", "quantity", "value"], rows)
 
 
 def warm_up(options):
@@ -239,20 +226,19 @@ def ratios(options, name, of):
 
 
 def main(words):
-    options = linear.parser("peer", __doc__).parse_args(words)
+    options = common.parser("peer", __doc__).parse_args(words)
     options.porepy = os.environ.get("POREPY") and Path(os.environ["POREPY"]).resolve()
     if not options.porepy:
         print(WHY)
         return 0
     if not Path(options.porepy, "src/porepy").is_dir():
-        sys.exit(f"peer: POREPY = {options.porepy} holds no src/porepy")
-    parts = linear.matching(options, PARTS)
-    options.output.mkdir(parents=True, exist_ok=True)
+        raise Failed(f"POREPY = {options.porepy} holds no src/porepy")
+    parts = common.matching(options, PARTS)
     warm_up(options)
     same, found, total, wrong = {}, {}, {}, []
     if "contact" in parts:
         print("values times 1000")
-        _, same["tilted"] = compare_tilted(options, meshes_of(options, TILTED))
+        same["tilted"] = compare_tilted(options, meshes_of(options, TILTED))
     if "heat" in parts:
         print("\nwith flow and heat")
         same["heat"] = compare_heat(options, meshes_of(options, HEAT))
@@ -284,7 +270,3 @@ def main(words):
     print("\n".join(["", *wrong, *([] if options.quick else missed), f"peer.csv and pictures in {options.output}"]))
     print(" ".join(f"{name}={value:.0f}" for name, value in total.items() if options.quick or name in ASKED or name == "ratio_adaptive"))
     return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

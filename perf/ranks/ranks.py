@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The same scenes on more ranks, and scenes that grow with the number of ranks: iterations, messages and memory on 1 to 64 ranks, seconds on 1 and 2.
 
 The scenes are blocks and a network of random fractures. With more ranks than cores, times are meaningless, but the counts equal those of a cluster.
@@ -6,23 +5,21 @@ The scenes are blocks and a network of random fractures. With more ranks than co
 with more cores."""
 import math
 import shlex
-import sys
+from argparse import Namespace
 from dataclasses import dataclass
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("perf/krylov", "perf/networks")]
-
-import linear  # noqa: E402
-import networks  # noqa: E402
-import scale  # noqa: E402
-from krylov import STATES  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import Run, command, on_ranks
+from perf.krylov import linear
+from perf.krylov.krylov import STATES
+from perf.networks import networks, scale
 
 STATE = "mixed"
 STEPS = 2   # steps of a network: one of compression, one of shear
 TIMES = 3   # repetitions of each timed run, in turns: other load slows single runs, mostly the first
 KINDS = ("blocks", "network")
-BOUNDS = {"speedup2": 1.8, "growth16": 0.2, "growth64": 0.2}
+BOUNDS = {"speedup2": (+1, 1.8), "growth16": 0.2, "growth64": 0.2}
 COLUMNS = {"scene, ranks": "", "size": "d", "unknowns": "d", "per rank": "d", "Newton": ".4g", "mean": ".1f", "max": ".4g", "residual": ".0e", "halo kB": ".1f", "messages": "d",
            "exchanges": "d", "cut edges": "d", "levels": "d", "last": "d", "its ranks": "d",
            "of a cycle": ".0f", "kB of a cycle": ".0f", "MB": ".0f", "MB of a rank": ".0f", "set-up s": ".1f", "assembly s": ".1f", "solve s": ".1f"}
@@ -57,9 +54,8 @@ def mesh_of(options, network):
     directory = options.output / "meshes"
     made = directory / str(network.fractures)
     if not (made / "network.msh.json").is_file():  # written last
-        to = type("To", (), {**vars(options), "output": directory.resolve()})
-        networks.made(to, networks.Network(str(network.fractures), network.file, network.sets(1)))
-    return made.resolve() / "network.msh"
+        networks.made(Namespace(**{**vars(options), "output": directory}), networks.Network(str(network.fractures), network.file, network.sets(1)))
+    return made / "network.msh"
 
 
 def cases(options):
@@ -75,11 +71,7 @@ def cases(options):
 @dataclass
 class Row:
     case: Case
-    run: linear.Run
-
-    @property
-    def seconds(self):
-        return sum(self.run.seconds(what) for what in linear.TIMERS)
+    run: Run
 
     @property
     def halo(self):
@@ -97,10 +89,10 @@ class Row:
 
     def values(self):
         run, results = self.run, self.run.results
-        return [self.case.name, self.case.size, run.unknowns, run.unknowns // self.case.ranks, run.newton, run.mean, run.most, run.residual,
+        return [self.case.name, self.case.size, run.unknowns, run.unknowns // self.case.ranks, run.mean_newton, run.mean, run.most, run.residual,
                 self.halo / 1e3, self.of_fields("halo_messages"), results.get("timing", {}).get("ghost_exchange", {}).get("count", 0), results["partition"]["cut_edges"],
                 self.cycle.get("levels"), *(self.cycle.get(what, [None])[-1] for what in ("unknowns_of_levels", "ranks_of_levels")), self.cycle.get("messages_largest_rank"),
-                self.cycle.get("message_bytes_largest_rank", 0) / 1e3, run.bytes[0] / 1e6, run.bytes[1] / 1e6, *(run.seconds(what) for what in linear.TIMERS)]
+                self.cycle.get("message_bytes_largest_rank", 0) / 1e3, run.bytes[0] / 1e6, run.bytes[1] / 1e6, *run.times]
 
 
 @dataclass
@@ -148,7 +140,7 @@ def summary(rows, most):
     by = {(row.case.series, row.case.ranks): row for row in rows}
     one, many = by.get(("strong", 1)), by.get(("strong", most))
     weak = sorted((row for row in rows if row.case.series == "weak"), key=lambda row: row.case.ranks)
-    least = [min((row.seconds for row in rows if (row.case.series, row.case.ranks) == ("timed", ranks)), default=float("nan")) for ranks in (1, 2)]
+    least = [min((row.run.total_time for row in rows if (row.case.series, row.case.ranks) == ("timed", ranks)), default=float("nan")) for ranks in (1, 2)]
     return {"speedup2": least[0] / least[1],
             f"growth{most}": many.run.mean / one.run.mean - 1 if one and many else float("nan"),
             "growth64": weak[-1].run.mean / weak[0].run.mean - 1 if len(weak) > 1 and weak[-1].case.ranks == 64 else float("nan")}
@@ -185,50 +177,34 @@ def print_commands(options, chosen):
     """Makes missing meshes and prints the command of each run."""
     for case in {case.directory: case for case in chosen}.values():
         scene, sets = case.scene(options)
-        print(f"# {case.name}\n{shlex.join(linear.on_ranks(case.ranks, linear.command(options, sets, options.output / case.directory, scene)))}")
+        print(f"# {case.name}\n{shlex.join(on_ranks(case.ranks, command(options.binary, scene, options.output / case.directory, linear.entries(options, sets))))}")
 
 
 def main(words):
-    parser = linear.parser("ranks", __doc__)
-    parser.add_argument("--edge", type=linear.count, default=42, metavar="N", help="cells along an edge of the box of the timed blocks (42, 280 thousand unknowns)")
-    parser.add_argument("--fractures", type=linear.count, default=150, metavar="N", help="fractures of the timed network (150, 100 thousand unknowns and half as many of tips)")
+    parser = common.parser("ranks", __doc__)
+    parser.add_argument("--edge", type=common.count, default=42, metavar="N", help="cells along an edge of the box of the timed blocks (42, 280 thousand unknowns)")
+    parser.add_argument("--fractures", type=common.count, default=150, metavar="N", help="fractures of the timed network (150, 100 thousand unknowns and half as many of tips)")
     parser.add_argument("--model", action="store_true", help="predict the seconds of an iteration on 10^2 to 10^5 ranks from the weak series")
     parser.add_argument("--commands", action="store_true", help="generate the meshes, and print the command line of each run instead of running it")
     options = parser.parse_args(words)
-    chosen = linear.matching(options, cases(options), lambda case: case.name)
-    options.output.mkdir(parents=True, exist_ok=True)
+    chosen = common.matching(options, cases(options), lambda case: case.name)
     if options.commands:
         return print_commands(options, chosen)
-    table, rows, failed = linear.Table(COLUMNS, 19), [], []
+    rows = table.Series(COLUMNS, 19)
     for case in chosen:
         scene, sets = case.scene(options)
         run = linear.run(options, sets, case.directory, case.ranks, scene=scene)
-        if run.failure:
-            failed.append(f"failed: {case.name}: {run.failure}")
-        if run.steps:
-            rows.append(Row(case, run))
-            table.add(rows[-1].values(), failed[-1:] if run.failure else ())
-    if not rows:
-        sys.exit("\n".join(failed))
-    table.write(options.output / "ranks.csv")
-    draw(rows, options.output / "ranks.png")
+        rows.run(case.name, run, Row(case, run))
     most = max(case.ranks for case in cases(options) if case.series == "strong")
-    missed, last = [], []
-    for kind in KINDS:
-        of_kind = [row for row in rows if row.case.kind == kind]
-        if options.model and any(row.case.series == "weak" and row.cycle for row in of_kind):
-            predict(kind, of_kind)
-        total = summary(of_kind, most)
-        missed += [f"missed: {kind}: {name} = {total[name]:.2f}, the bound is {BOUNDS['growth16' if name == f'growth{most}' else name]}"
-                   for name in total if name != "speedup2" and total[name] > BOUNDS["growth16" if name == f"growth{most}" else name]]
-        if total["speedup2"] < BOUNDS["speedup2"]:
-            last.append(f"missed: {kind}: speedup2 = {total['speedup2']:.2f}, required: {BOUNDS['speedup2']}")
-        last.append(" ".join(f"{name}_{kind}={value:.2f}" for name, value in total.items()))
-    words = [line for line in last if line.startswith("missed")]
-    print("\n".join(["", *failed, *missed, *words, f"ranks.csv and ranks.png in {options.output}"]))
-    print(" ".join(line for line in last if line not in words))
-    return 1 if failed or (options.quick and missed) else 0
+    bounds = {f"{name}_{kind}": bound for kind in KINDS for name, bound in {**BOUNDS, f"growth{most}": BOUNDS["growth16"]}.items()
+              if name in ("speedup2", f"growth{most}", "growth64")}
 
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    def total(rows):
+        values = {}
+        for kind in KINDS:
+            of_kind = [row for row in rows if row.case.kind == kind]
+            if options.model and any(row.case.series == "weak" and row.cycle for row in of_kind):
+                predict(kind, of_kind)
+            values |= {f"{name}_{kind}": value for name, value in summary(of_kind, most).items()}
+        return values
+    return rows.finish(options, total, {name: ".2f" for name in bounds}, draw, bounds)

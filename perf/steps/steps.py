@@ -1,22 +1,15 @@
-#!/usr/bin/env python3
 """Errors and costs of automatic time steps, compared with equal steps."""
-import argparse
-import csv
-import json
-import os
 import re
 import shutil
-import subprocess
 import sys
 from dataclasses import dataclass, field
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "apps/plot"))
+import numpy as np
+import read
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
-import numpy as np  # noqa: E402
-import read  # noqa: E402
-from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
+from perf.common import options as common
+from perf.common import program, table
 
 SHARES = (1, 2, 4, 8, 16)  # times of comparison, in 16ths of the end time
 TOLERANCES = (3e-2, 1e-2, 3e-3)
@@ -92,27 +85,21 @@ def states(directory, case):
 
 def run(options, case, time, sets, name):
     """Runs a case with other time steps; `time` contains XML entries of the section Time."""
-    text = (ROOT / "xml" / case.scene).read_text()
+    text = (program.ROOT / "xml" / case.scene).read_text()
     for pattern, replacement in case.edits:
         text = re.sub(pattern, replacement, text)
     text = re.sub(r'\s*<Parameter name="(?:steps|tolerance|schedule)"[^>]*/>', "", text)
     text = text.replace('<ParameterList name="Time">', '<ParameterList name="Time">' + time)
     folder = options.output / re.sub(r"[^\w.+-]+", "_", f"{case.name} {name}")
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    (folder / "scene.xml").write_text(text)
-    words = [str(options.binary), "run", str(folder / "scene.xml"), "--output", str(folder)]
-    for entry in (*case.sets, *sets, *(case.quick if options.quick else ())):
-        words += ["--set", entry]
-    done = subprocess.run(["timeout", str(TIME_LIMIT), *words], capture_output=True, text=True, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode:
-        raise RuntimeError(f"{case.name}, {name}: {done.stderr.strip().splitlines()[-1] if done.stderr.strip() else done.returncode}")
-    results = json.loads((folder / "results.json").read_text())
-    steps, timing = results["steps"], results["timing"]
-    cpu = sum(timing[phase]["cpu_seconds"] for phase in ("time_steps", "choice_of_steps") if phase in timing)
+    scene = folder.with_name(f"{folder.name}.xml")
+    scene.write_text(text)
+    found = program.succeeded(options.binary, scene, folder, (*case.sets, *sets, *(case.quick if options.quick else ())), clock=TIME_LIMIT)
+    steps = found.steps
     newton = sum(step["newton_iterations"] + step.get("rejected_newton_iterations", 0) for step in steps)
-    result = Run(len(steps), sum(step.get("rejected", 0) for step in steps), newton, cpu, states(folder, case))
+    result = Run(len(steps), sum(step.get("rejected", 0) for step in steps), newton, found.time("time_steps", "choice_of_steps", clock="cpu_seconds"),
+                 states(folder, case))
     shutil.rmtree(folder)
+    scene.unlink()
     return result
 
 
@@ -171,13 +158,9 @@ def draw(rows, file):
 
 
 def main(words):
-    parser = argparse.ArgumentParser(prog="sprekk perf steps", description=__doc__)
-    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/steps"), help="folder of the table and pictures")
-    parser.add_argument("--only", default="", help="cases whose name contains this text")
-    parser.add_argument("--quick", action="store_true", help="fewer cases, one tolerance; with bounds on Newton iterations instead of seconds")
-    options = parser.parse_args(words)
-    options.output.mkdir(parents=True, exist_ok=True)
+    quick = "fewer cases, one tolerance; with bounds on Newton iterations instead of seconds"
+    options = common.parser("steps", __doc__, quick, "cases", sets=False).parse_args(words)
+    chosen_cases = [case for case in common.matching(options, CASES, lambda case: case.name) if not options.quick or options.only or case.name in QUICK]
     rows, failed, misses, costs = [], [], {}, {}
     print(f"{'case':32} {'kind':>16} {'steps':>6} {'rejected':>8} {'Newton':>7} {'CPU s':>8} {'error':>9} {'miss':>6} {'cost':>6}")
 
@@ -186,9 +169,7 @@ def main(words):
         numbers = [f"{value:6.2f}" if value != "" else " " * 6 for value in (miss, cost)]
         print(f"{case.name:32} {label:>16} {run.steps:6d} {run.rejected:8d} {run.newton:7d} {run.cpu:8.3f} {e:9.2e} {numbers[0]} {numbers[1]}", flush=True)
 
-    for case in CASES:
-        if options.only not in case.name or (options.quick and not options.only and case.name not in QUICK):
-            continue
+    for case in chosen_cases:
         try:
             counts = case.counts[:4] if options.quick else case.counts
             second_order = ("Time.scheme=BDF2",) if case.start or "pressure" in case.fields else ()
@@ -206,15 +187,12 @@ def main(words):
                 misses.setdefault(case.name, []).append(e / tolerance)
                 costs.setdefault(case.name, []).append(cost)
                 add(case, "chosen", f"tolerance {tolerance:g}", result, e, e / tolerance, cost)
-        except (RuntimeError, KeyError, read.PlotError) as reason:
+        except (program.Failed, KeyError, read.PlotError) as reason:
             failed.append(f"failed: {case.name}: {reason}")
             print(failed[-1])
     if not costs:
-        sys.exit("\n".join(failed) or f"no case has \"{options.only}\" in its name")
-    with open(options.output / "steps.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+        sys.exit("\n".join(failed))
+    table.write(options.output / "steps.csv", rows[0], [row.values() for row in rows])
     draw(rows, options.output / "steps.png")
     worst = max(max(of) for of in misses.values())
     means = {name: float(np.exp(np.mean(np.log(of)))) for name, of in costs.items()}
@@ -225,7 +203,3 @@ def main(words):
     print("\n".join(["", f"steps.csv and steps.png in {options.output}", *failed, *wrong]))
     print(f"failures={len(failed)} worst_miss={worst:.2f} cost={cost:.2f}")
     return 1 if failed or (options.quick and wrong) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -1,13 +1,7 @@
-#!/usr/bin/env python3
 """Krylov and Newton iterations of thermo-hydro-mechanics: cold water is injected into hot rock with a network of ten fractures.
 
 Every linear solve goes from zero to a relative residual of 1e-8."""
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1] / "poro"))
-
-import poro  # noqa: E402
+from perf.poro import poro
 
 HOT, COLD = 420, 320       # K, of the rock and the injected water
 HEAT_OF_FLUID = 4.2e6      # J/(m^3 K)
@@ -33,7 +27,3 @@ def entries(case):
 
 def main(words):
     return poro.measure(poro.Study("thm", __doc__, [*poro.CASES, *PECLET], QUICK, entries, BOUNDS, poro.LEVELS), words)
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -7,9 +7,7 @@ from typing import Callable
 
 import numpy as np
 
-import exact
-import measure
-import meshes
+from perf.verification import exact, measure, meshes
 
 REFERENCES = Path(__file__).resolve().parent / "references"
 

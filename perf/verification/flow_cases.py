@@ -5,11 +5,9 @@ from collections import namedtuple
 
 import numpy as np
 
-import flow_exact
-import flow_measure
-import meshes
+from perf.verification import flow_exact, flow_measure, meshes
 import style
-from cases import REFERENCES, Bound, Case, Order, Series, gmsh, graded, uniform
+from perf.verification.cases import REFERENCES, Bound, Case, Order, Series, gmsh, graded, uniform
 
 CALLED = ("pressure", "velocity")
 DIRECT = ("Solver.Linear solver.type=direct",)  # for errors close to round-off

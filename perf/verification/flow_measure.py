@@ -4,7 +4,7 @@ import math
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from measure import CELLS, SIMPLICES, cube_rule, face_points, relative, simplex_rule
+from perf.verification.measure import CELLS, SIMPLICES, cube_rule, face_points, relative, simplex_rule
 
 INSIDE = 1e-9  # relative to the cell size: a point on a face belongs to both cells
 

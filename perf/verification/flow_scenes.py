@@ -1,10 +1,7 @@
-#!/usr/bin/env python3
 """Writes the flow scenes of this measurement and their coarse meshes into xml/verification. Requires SymPy and gmsh."""
 import sys
 
-import make_scenes
-import manufactured
-import meshes
+from perf.verification import make_scenes, manufactured, meshes
 
 
 def write(name, comment, content):

@@ -3,12 +3,10 @@ import math
 
 import numpy as np
 
-import flow_measure
-import heat_exact
-import measure
-from cases import Bound, Case, Order, Series
-from poro_cases import SCHEMES, SHAPES, numbers
-from poro_fractures import opened_errors
+from perf.verification import flow_measure, heat_exact, measure
+from perf.verification.cases import Bound, Case, Order, Series
+from perf.verification.poro_cases import SCHEMES, SHAPES, numbers
+from perf.verification.poro_fractures import opened_errors
 
 CALLED = ("temperature", "")
 VELOCITY, DIFFUSIVITY, DAY = 8e-6, 3e-6, 1e6  # of the front: m/s, m^2/s, s

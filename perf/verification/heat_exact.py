@@ -1,8 +1,7 @@
 """Exact solutions of rock and fractures with heat, independent of the program."""
 import numpy as np
 
-import exact
-import flow_exact
+from perf.verification import exact, flow_exact
 
 
 class Sliding(flow_exact.Manufactured, exact.Manufactured):

@@ -1,13 +1,8 @@
-#!/usr/bin/env python3
 """Writes the heat scenes of this measurement into xml/verification. Requires SymPy."""
 import math
 import sys
 
-import flow_scenes
-import heat_exact
-import make_scenes
-import manufactured
-import poro_scenes
+from perf.verification import flow_scenes, heat_exact, make_scenes, manufactured, poro_scenes
 
 
 def sliding_fractures():

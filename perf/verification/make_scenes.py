@@ -1,12 +1,10 @@
-#!/usr/bin/env python3
 """Writes the scenes of this measurement and their coarse meshes into xml/verification. Requires SymPy and gmsh."""
 import math
 import sys
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
-import manufactured
-import meshes
+from perf.verification import manufactured, meshes
 
 FOLDER = Path(__file__).resolve().parents[2] / "xml/verification"
 

@@ -1,28 +1,20 @@
 """Runs a scene and measures its results against exact functions, from the output files of the run."""
-import json
 import math
-import os
-import shutil
-import subprocess
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import vtkmodules.vtkCommonDataModel as vtk
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-import read  # in apps/plot
+import read
 
-ROOT = Path(__file__).resolve().parents[2]
+from perf.common import program
+
 TIME_LIMIT = 900  # seconds per run
 CELLS = {5: vtk.vtkTriangle, 9: vtk.vtkQuad, 10: vtk.vtkTetra, 12: vtk.vtkHexahedron, 22: vtk.vtkQuadraticTriangle,
          28: vtk.vtkBiQuadraticQuad, 24: vtk.vtkQuadraticTetra, 29: vtk.vtkTriQuadraticHexahedron}
 SIMPLICES = {5: 2, 22: 2, 10: 3, 24: 3}
 GAUSS = 5  # points per direction
-
-
-class RunError(Exception):
-    """Error of a run without results; the message contains the reason."""
 
 
 def cube_rule(dimension, points=GAUSS):
@@ -69,8 +61,7 @@ class Run:
 
     def unknowns(self, prescribed):
         """Number of unknowns of the linear system, without eliminated blocks and prescribed displacements."""
-        eliminated = {block for group in self.results["blocks"].get("local_groups", []) for block in group["blocks"]}
-        kept = sum(f["unknowns"] for f in self.results["blocks"]["fields"] if f["name"] not in eliminated)
+        kept = program.Run(results=self.results).system
         if prescribed is None:
             return kept
         points, values = vtk_to_numpy(self.rock.GetPoints().GetData()), self.rock.GetPointData().GetArray("displacement")
@@ -87,18 +78,8 @@ class Run:
 
 
 def start(binary, scene, sets, directory, ranks=1):
-    """Runs xml/SCENE with the entries `sets`; returns the last step. Raises RunError if the run fails."""
-    shutil.rmtree(directory, ignore_errors=True)
-    command = [str(binary), "run", str(ROOT / "xml" / scene), "--output", str(directory)]
-    command += [word for entry in sets for word in ("--set", entry)]
-    if ranks > 1:
-        command = ["mpirun", "--quiet", "--oversubscribe", "--bind-to", "none", "-np", str(ranks)] + command
-    done = subprocess.run(["timeout", "--kill-after=5", str(TIME_LIMIT), *command], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode != 0:
-        words = [line for line in (done.stdout + done.stderr).splitlines() if any(c.isalpha() for c in line)] or ["no word"]
-        raise RunError(f"status {done.returncode}: {words[-1]}")
-    results = json.loads((directory / "results.json").read_text())
+    """Runs xml/SCENE with the entries `sets`; returns the last step. Raises Failed if the run fails."""
+    results = program.succeeded(binary, scene, directory, sets, ranks, clock=TIME_LIMIT).results
     rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
     written = read.written_steps(directory, "fractures")
     faces = read.segments(read.grid(written[-1][1])) if written else None

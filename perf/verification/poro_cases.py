@@ -4,12 +4,8 @@ import csv
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-import flow_measure
-import measure
-import meshes
-import poro_exact
-import poro_measure
-from cases import REFERENCES, Bound, Case, Order, Series, gmsh
+from perf.verification import flow_measure, measure, meshes, poro_exact, poro_measure
+from perf.verification.cases import REFERENCES, Bound, Case, Order, Series, gmsh
 
 CALLED = ("pressure", "settlement")
 SHAPES = {2: ("triangle", "quadrilateral"), 3: ("tetrahedron", "hexahedron")}

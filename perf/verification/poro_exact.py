@@ -7,8 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-import exact
-import flow_exact
+from perf.verification import exact, flow_exact
 
 
 @dataclass

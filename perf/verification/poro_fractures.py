@@ -3,15 +3,10 @@ from dataclasses import replace
 
 import numpy as np
 
-import cases
-import exact
-import flow_measure
-import measure
-import meshes
-import poro_exact
-from cases import Bound, Case, Order, Series, gmsh, graded, uniform
-from measure import face_points
-from poro_cases import SHAPES, mean_pressures, numbers
+from perf.verification import cases, exact, flow_measure, measure, meshes, poro_exact
+from perf.verification.cases import Bound, Case, Order, Series, gmsh, graded, uniform
+from perf.verification.measure import face_points
+from perf.verification.poro_cases import SHAPES, mean_pressures, numbers
 
 
 def rock(entries):

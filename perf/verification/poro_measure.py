@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-import flow_measure
-from measure import CELLS, SIMPLICES, face_means, relative
+from perf.verification import flow_measure
+from perf.verification.measure import CELLS, SIMPLICES, face_means, relative
 
 FACES = {3: [(0, 1), (1, 2), (2, 0)], (2, 4): [(0, 1), (1, 2), (2, 3), (3, 0)], (3, 4): [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)],
          8: [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]}

@@ -1,12 +1,7 @@
-#!/usr/bin/env python3
 """Writes the poroelastic scenes of this measurement into xml/verification. Requires SymPy and gmsh."""
 import sys
 
-import flow_scenes
-import make_scenes
-import manufactured
-import meshes
-import poro_exact
+from perf.verification import flow_scenes, make_scenes, manufactured, meshes, poro_exact
 
 
 def rock(of):

@@ -1,27 +1,17 @@
-#!/usr/bin/env python3
 """Errors against exact solutions, unknowns and seconds: runs cases on several meshes each, prints a table and draws the errors.
 
 The last line of each case summarises it. README.md in this folder describes the columns."""
-import argparse
-import csv
 import math
 import re
-import sys
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "apps/plot")]
+import style
 
-import cases  # noqa: E402
-import flow_cases  # noqa: E402
-import heat_cases  # noqa: E402
-import measure  # noqa: E402
-import meshes  # noqa: E402
-import poro_cases  # noqa: E402
-import poro_fractures  # noqa: E402
-import style  # noqa: E402
+from perf.common import options as common
+from perf.common import table
+from perf.common.program import Failed
+from perf.verification import cases, flow_cases, heat_cases, measure, meshes, poro_cases, poro_fractures
 
 CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES + poro_fractures.CASES + heat_cases.CASES
 ESTIMATES = ("jump", "stress")
@@ -164,7 +154,7 @@ def measured(options, case):
         for label, source in grids:
             try:
                 row, dimension = run(options, case, series, label, source)
-            except measure.RunError as error:
+            except Failed as error:
                 wrong.append(f"{series.name}, {label}: {error}")
                 continue
             if before:
@@ -180,31 +170,25 @@ def measured(options, case):
 
 def write(rows, file):
     names = list(dict.fromkeys(name for row in rows for name in row.errors))
-    with open(file, "w", newline="") as opened:
-        writer = csv.writer(opened)
-        writer.writerow(["series", "mesh", "cells", "unknowns", *names, *[f"order of {name}" for name in names], *[f"{name} estimate" for name in ESTIMATES], "newton", "krylov", "seconds"])
-        writer.writerows([row.series, row.mesh, row.cells, row.unknowns, *[row.errors.get(n) for n in names],
-                          *[row.orders.get(n) for n in names],
-                          *[row.effectivity.get(n) for n in ESTIMATES], row.newton, row.krylov, row.seconds] for row in rows)
+    table.write(file, ["series", "mesh", "cells", "unknowns", *names, *[f"order of {name}" for name in names], *[f"{name} estimate" for name in ESTIMATES], "newton", "krylov", "seconds"],
+                [[row.series, row.mesh, row.cells, row.unknowns, *[row.errors.get(n) for n in names],
+                  *[row.orders.get(n) for n in names],
+                  *[row.effectivity.get(n) for n in ESTIMATES], row.newton, row.krylov, row.seconds] for row in rows])
 
 
 def arguments(words):
     names = [make.__name__ for make in CASES]
     groups = [word for word, n in Counter(name.split("_")[0] for name in names).items() if n > 1 and word not in names]
-    parser = argparse.ArgumentParser(prog="sprekk perf verification", description=__doc__)
+    parser = common.parser("verification", __doc__, "coarse meshes only, for a test", only=None, sets=False)
     parser.add_argument("--only", metavar="CASE", action="append", choices=names + groups,
                         help=f"one of {', '.join(names)}, or the common beginning of several ({', '.join(groups)}); may be repeated")
-    parser.add_argument("--quick", action="store_true", help="coarse meshes only, for a test")
     parser.add_argument("--no-pictures", dest="pictures", action="store_false", help="tables only")
     parser.add_argument("--ranks", type=int, default=1, metavar="N", help="run on N ranks")
-    parser.add_argument("--output", type=Path, default=Path("output/perf/verification"), metavar="DIR")
-    parser.add_argument("--binary", type=Path, default=ROOT / "build/apps/sprekk/sprekk", help="the program")
     return parser.parse_args(words)
 
 
 def main(words):
     options = arguments(words)
-    options.output = options.output.resolve()
     above, lines = [], []
     for make in CASES:
         if options.only and not {make.__name__, make.__name__.split("_")[0]} & set(options.only):
@@ -230,7 +214,3 @@ def main(words):
         print(last_line(case, rows) + "\n", flush=True)
         above += wrong
     return 1 if above else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -23,7 +23,6 @@ from description import Network  # noqa: E402
 from osgeo import ogr, osr  # noqa: E402
 from shapes import NetworkError  # noqa: E402
 
-sys.path.insert(0, str(ROOT / "apps" / "plot"))
 from conformity import DEFAULTS, SQUARE, as_xml  # noqa: E402
 
 TRACES = {"F1": [[0.2, 0.5], [0.8, 0.5]], "F2": [[0.5, 0.2], [0.5, 0.6], [0.6, 0.8]]}

@@ -21,7 +21,7 @@ if MISSING:
 import numpy as np  # noqa: E402
 from program import ROOT, ProgramTest, main  # noqa: E402
 
-sys.path[:0] = [str(ROOT / folder) for folder in ("apps/mesh", "apps/export", "apps/plot")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("apps/mesh", "apps/export")]
 spec = importlib.util.spec_from_file_location("sprekk_export", ROOT / "apps" / "export" / "__main__.py")
 app = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(app)

@@ -5,14 +5,12 @@ Requires numpy and VTK's Python. If one is missing, the status is 77, for ctest'
 import importlib.util
 import sys
 
-from program import ROOT, ProgramTest, main
+from program import ProgramTest, main
 
 MISSING = [name for name in ("numpy", "vtkmodules") if importlib.util.find_spec(name) is None]
 if MISSING:
     print(f"skipped: {sys.executable} has no {', '.join(MISSING)}")
     sys.exit(77)
-
-sys.path.insert(0, str(ROOT / "apps" / "plot"))
 
 import numpy as np  # noqa: E402
 import read  # noqa: E402

@@ -6,8 +6,7 @@ import sys
 import program
 from program import ProgramTest, main
 
-sys.path.insert(0, str(program.ROOT / "perf/contact"))
-import scene_file  # noqa: E402
+from perf.common import scene_file
 
 N_SCENES, SEED = (int(word) for word in (*sys.argv[4:6], *("12", "1")[len(sys.argv[4:6]):]))
 ROCK = {"type": "elastic", "Young's modulus": 25e9, "Poisson's ratio": 0.25}

@@ -144,7 +144,9 @@ class Launcher(ProgramTest):
     def test_perf_runs_a_measurement(self):
         measurement = self.folder / "perf/greet/greet.py"
         measurement.parent.mkdir(parents=True)
-        measurement.write_text("import sys; print(sys.argv[1:]); sys.exit(3)")
+        measurement.write_text("def main(words):\n    print(words)\n    return 3\n")
+        for name in ("__init__.py", "__main__.py", "save.py", "common"):
+            (shutil.copytree if name == "common" else shutil.copy)(ROOT / "perf" / name, self.folder / "perf" / name)
         out, _ = self.launch("perf", "greet", "--quick", "--only", "a b", expect=3)
         self.assertEqual(out, "['--quick', '--only', 'a b']\n")
         for words in (["perf"], ["perf", "walk"], ["perf", "--help"]):

@@ -12,19 +12,13 @@ import xml.etree.ElementTree as xml
 import program
 from program import ROOT, ProgramTest, main
 
-if ROOT:
-    sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/contact")]
 try:
     import gmsh  # noqa: F401
     import numpy as np
-    import contact
-    import limit_analysis
-    import random_run
-    import random_scenes
-    import rigid_pieces
-    import scene_file
     import violation
-    from scenes import Scene
+    from perf.common import scene_file
+    from perf.contact import contact, limit_analysis, random_run, random_scenes, rigid_pieces
+    from perf.contact.scenes import Scene
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -196,8 +190,8 @@ class Verdicts(ProgramTest):
         input_.root.append(scene_file.section("Time", {"end": end, "steps": 2}))
         path = self.folder / "scene.xml"
         path.write_text(xml.tostring(input_.root, encoding="unicode"))
-        run = contact.Run(Scene("scene", str(path)), self.folder / "none", words="said", results={"steps": [], "reason": "why"})
-        return random_run.judge(run, status, path)
+        run = contact.Run(self.folder / "none", status, "said", results={"steps": [], "reason": "why"}, scene=Scene("scene", str(path)))
+        return random_run.judge(run, path)
 
     def test_a_refusal_is_right_only_where_no_tractions_exist(self):
         self.assertEqual(self.verdict(3, 0.0), ("refused", []))
@@ -215,7 +209,7 @@ class Verdicts(ProgramTest):
         broken = self.folder / "broken"
         broken.write_text("#!/bin/sh\necho no good; exit 5\n")
         broken.chmod(0o755)
-        command = [sys.executable, "-B", ROOT / "perf/contact/contact.py", "--random", "12", "--seed", "7", "--only", "box-2d-0009",
+        command = [sys.executable, "-B", ROOT / "perf", "contact", "--random", "12", "--seed", "7", "--only", "box-2d-0009",
                    "--binary", broken, "--output", self.folder / "out"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)

@@ -10,12 +10,10 @@ from pathlib import Path
 import program
 from program import ROOT, ProgramTest, main
 
-if ROOT:
-    sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/contact")]
 try:
     import numpy as np
-    import exact
     import violation
+    from perf.contact import exact
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -171,7 +169,7 @@ class Violation(ProgramTest):
 
 class Table(ProgramTest):
     def contact(self, *words, expect):
-        done = subprocess.run([sys.executable, "-B", ROOT / "perf/contact/contact.py", "--binary", program.PROGRAM, "--output",
+        done = subprocess.run([sys.executable, "-B", ROOT / "perf", "contact", "--binary", program.PROGRAM, "--output",
                                self.folder / "out", *words], cwd=self.folder, capture_output=True, text=True,
                               timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)

@@ -2,23 +2,19 @@
 """Random scenes of perf/coupled: perf_coupled_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
 
 Tests equal scenes for equal seeds, exact balances, and the detection of wrong files."""
+import json
 import subprocess
 import sys
 
 import program
 from program import ROOT, ProgramTest, main
 
-if ROOT:
-    sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/krylov", "perf/contact", "perf/coupled")]
 try:
     import numpy as np
-    import balances
-    import checks
-    import coupled_scenes
-    import differences
-    import program_run
-    from scene_file import save
-    from written import Written
+    from perf.common import program as runs
+    from perf.common.scene_file import save
+    from perf.coupled import balances, checks, coupled_scenes, differences
+    from perf.coupled.written import Written
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -55,7 +51,7 @@ class Coupled(ProgramTest):
     def ran(self, tree, name="scene", status=0):
         path = self.folder / f"{name}.xml"
         save(tree, path, "test")
-        ended = program_run.run(program.PROGRAM, path, self.folder / name)
+        ended = runs.run(program.PROGRAM, path, self.folder / name)
         self.assertEqual(ended.status, status, ended.words)
         return Written(self.folder / name, ended.results)
 
@@ -116,7 +112,7 @@ class Coupled(ProgramTest):
 
     def again(self, run):
         """Returns the run as read from its files."""
-        return Written(run.directory, program_run.json.loads((run.directory / "results.json").read_text()))
+        return Written(run.directory, json.loads((run.directory / "results.json").read_text()))
 
     def test_differences(self):
         """Renamed fractures and other numbers of ranks agree. A relative change of 1e-7 is detected."""
@@ -156,7 +152,7 @@ class Coupled(ProgramTest):
         broken.write_text("#!/bin/sh\necho no good; exit 5\n")
         broken.chmod(0o755)
         name = coupled_scenes.draw_scene(7, 3).name
-        command = [sys.executable, "-B", ROOT / "perf/coupled/coupled.py", "--random", "12", "--seed", "7", "--only", name,
+        command = [sys.executable, "-B", ROOT / "perf", "coupled", "--random", "12", "--seed", "7", "--only", name,
                    "--binary", broken, "--output", self.folder / "out"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)

@@ -4,13 +4,11 @@
 Forces, moments and energy are in balance for correct runs. Wrong results have the corresponding defects."""
 import sys
 
-from program import ROOT, ProgramTest, main
+from program import ProgramTest, main
 
-if ROOT:
-    sys.path[:0] = [str(ROOT / folder) for folder in ("apps/plot", "perf/contact", "perf/networks")]
 try:
     import numpy as np
-    import balance
+    from perf.networks import balance
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)

@@ -9,17 +9,9 @@ from pathlib import Path
 import program
 from program import ROOT, ProgramTest, main
 
-if ROOT:
-    sys.path[:0] = [str(ROOT / "apps/plot"), str(ROOT / "perf/verification")]
 try:
     import numpy as np
-    import cases
-    import exact
-    import flow_exact
-    import flow_measure
-    import heat_exact
-    import measure
-    import poro_exact
+    from perf.verification import cases, exact, flow_exact, flow_measure, heat_exact, measure, poro_exact
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -136,7 +128,7 @@ class Exact(ProgramTest):
 
     def test_manufactured_rock_is_in_balance_with_its_fluid(self):
         try:
-            import manufactured
+            from perf.verification import manufactured
         except ImportError as error:
             self.skipTest(str(error))
         functions = {name: getattr(np, name) for name in ("sin", "cos", "exp", "pi")}
@@ -175,7 +167,7 @@ class Exact(ProgramTest):
 
         The expressions of the scenes are correct."""
         try:
-            import manufactured
+            from perf.verification import manufactured
         except ImportError as error:
             self.skipTest(str(error))
         functions, h, t = {name: getattr(np, name) for name in ("sin", "cos")}, 1e-4, 0.8
@@ -301,10 +293,7 @@ class Scenes(ProgramTest):
 
     def test_scenes_are_those_that_the_script_writes(self):
         try:
-            import flow_scenes
-            import heat_scenes
-            import make_scenes
-            import poro_scenes
+            from perf.verification import flow_scenes, heat_scenes, make_scenes, poro_scenes
         except ImportError as error:
             self.skipTest(str(error))
         make_scenes.FOLDER = self.folder
@@ -321,7 +310,7 @@ class Scenes(ProgramTest):
 
 class Table(ProgramTest):
     def test_lines_and_files(self):
-        done = subprocess.run([sys.executable, "-B", ROOT / "perf/verification/verification.py", "--binary", program.PROGRAM,
+        done = subprocess.run([sys.executable, "-B", ROOT / "perf", "verification", "--binary", program.PROGRAM,
                                "--output", self.folder / "out", "--quick", "--only", "mms2d"], capture_output=True, text=True,
                               timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -333,7 +322,7 @@ class Table(ProgramTest):
         self.assertTrue((self.folder / "out/mms2d.png").is_file())
 
     def test_a_missed_bound_is_told(self):
-        import verification
+        from perf.verification import verification
         case = cases.mms2d()
         row = verification.Row("mixed triangle 2", "n=32", 1, 8064, {"u": 2e-4}, {"jump": 0.4, "stress": 1.9}, 1, 1, 0.0, {"u": 1.2})
         wrong, judged = verification.missed(case, [row], False)

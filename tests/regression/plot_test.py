@@ -21,7 +21,6 @@ if MISSING:
     print(f"skipped: {sys.executable} has no {', '.join(MISSING)}")
     sys.exit(77)
 
-sys.path.insert(0, str(ROOT / "apps" / "plot"))
 spec = importlib.util.spec_from_file_location("sprekk_plot", ROOT / "apps" / "plot" / "__main__.py")
 plot = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plot)

@@ -9,6 +9,8 @@ from pathlib import Path
 
 # Command-line arguments: the program, the folder with xml/, mpiexec.
 PROGRAM, ROOT, MPIEXEC = (Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3]) if len(sys.argv) > 3 else (None, None, None)
+if ROOT:
+    sys.path[1:1] = [str(ROOT / folder) for folder in (".", "apps/plot", "apps/report")]
 ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}  # without a daemon of Open MPI
 TIME_LIMIT = 600  # seconds, for calls that hang; their status is then 124
 

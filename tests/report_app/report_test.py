@@ -21,7 +21,6 @@ if MISSING:
     print(f"skipped: {sys.executable} has no {', '.join(MISSING)}")
     sys.exit(77)
 
-sys.path[:0] = [str(ROOT / folder) for folder in ("apps/report", "apps/plot", "perf/contact")]
 spec = importlib.util.spec_from_file_location("sprekk_report", ROOT / "apps" / "report" / "__main__.py")
 report = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(report)

@@ -10,18 +10,16 @@ import unittest
 from pathlib import Path
 
 PERF = Path(__file__).resolve().parents[2] / "perf"
-PAGES = PERF / "pages.py"
 MEASUREMENT = """
-import sys
 from pathlib import Path
 BOUNDS = {"largest": 5}
-if __name__ == "__main__":
-    folder = Path(sys.argv[sys.argv.index("--output") + 1])
+def main(words):
+    folder = Path(words[words.index("--output") + 1])
     folder.mkdir(parents=True)
     (folder / "demo.csv").write_text("size,value\\r\\n3,0.25\\r\\n")
     print("size value")
     print("largest=4 failures=0")
-    sys.exit(1 if "--fail" in sys.argv else 0)
+    return 1 if "--fail" in words else 0
 """
 TABLE = """# command: ./sprekk perf krylov --largest 3e4
 # commit: 0123abc
@@ -69,7 +67,7 @@ class Pages(unittest.TestCase):
         self.assertEqual(self.pages(), (0, ""))
 
     def pages(self, *options):
-        command = [sys.executable, "-B", PAGES, "--root", self.root, *options]
+        command = [sys.executable, "-B", PERF, "pages", "--root", self.root, *options]
         done = subprocess.run(command, capture_output=True, text=True)
         return done.returncode, done.stdout + done.stderr
 
@@ -135,12 +133,13 @@ class Save(unittest.TestCase):
         self.root = Path(folder.name)
         for name in ("perf/demo", "docs/results"):
             (self.root / name).mkdir(parents=True)
-        shutil.copy(PERF / "save.py", self.root / "perf")
+        for name in ("__init__.py", "__main__.py", "save.py", "common"):
+            (shutil.copytree if name == "common" else shutil.copy)(PERF / name, self.root / "perf" / name)
         self.measurement = self.root / "perf/demo/demo.py"
         self.measurement.write_text(MEASUREMENT)
 
     def save(self, *words):
-        command = [sys.executable, "-B", "perf/save.py", "demo", *words]
+        command = [sys.executable, "-B", "perf", "demo", *words]
         return subprocess.run(command, capture_output=True, text=True, cwd=self.root)
 
     def test_table_with_header(self):
@@ -162,7 +161,7 @@ class Save(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn('argument --save: "../other"', done.stderr)
         self.assertEqual(self.save("--save").returncode, 0)
-        self.measurement.write_text("if __name__ == '__main__':\n    raise SystemExit(3)\n")
+        self.measurement.write_text("def main(words):\n    return 3\n")
         old = self.root / "output/perf/demo/demo.csv"
         os.utime(old, (0, 0))
         done = self.save("--save=third")

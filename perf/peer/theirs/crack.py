@@ -11,9 +11,7 @@ import measured
 import numpy as np
 import porepy as pp
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "verification"))
-
-from exact import Crack  # noqa: E402
+from perf.verification.exact import Crack
 
 G, NU, FRICTION, COARSER = 1, 0.25, 0.5, 8  # COARSER: ratio of cell sizes on the box and on the crack
 KNOWN = {"opening": Crack(1, 1e-3, G, NU, uniform=(0, 1e-3, 0)),

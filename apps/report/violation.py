@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-import read  # in apps/plot
+import read
 from joint_laws import JointLaw
 
 OPEN, STICK, SLIP = 0, 1, 2
