@@ -13,7 +13,7 @@ ROOT = Path(sys.argv[1])
 COMM = MPI.COMM_WORLD
 sys.path.append(str(ROOT / "apps/python/examples"))
 
-import coupled  # noqa: E402
+import own_flow  # noqa: E402
 
 E = 10e9  # Pa
 
@@ -54,14 +54,30 @@ class Failing(sprekk.Module):
         return {}
 
 
-class Coupled(unittest.TestCase):
-    def test_reservoir_by_exchange_and_in_one_jacobian(self):
-        self.assertTrue(coupled.main(8, 2))  # both within 1e-8 of Sprekk's own flow
+class Flow(unittest.TestCase):
+    def test_given_pressures(self):
+        """Pressures of Sprekk's own flow cause the same displacements and jumps, and the injected fluid is stored."""
+        own = sprekk.Model(own_flow.block(8, flow=True), COMM)
+        given = sprekk.Model(own_flow.block(8, flow=False), COMM, given_pressure=0)
+        own.step(own_flow.DT)
+        p = own.output("pressure").ravel()
+        given.set_fluid_pressure(p, own.output("fracture pressure").ravel())
+        given.step(own_flow.DT)
+        for name in ("displacement", "jump"):
+            self.assertLess(own_flow.distance(given.output(name), own.output(name)), 1e-8)
+        area = given.mesh.face_area
+        stored = np.sum(own_flow.STORAGE / 8**2 * p + given.output("gained pore volume").ravel())
+        stored += np.sum(area * given.output("widening").ravel())
+        injected = own_flow.INJECTION * own_flow.DT**2 * COMM.allreduce(float(np.sum(area)))
+        self.assertAlmostEqual(COMM.allreduce(float(stored)) / injected, 1, delta=1e-6)
 
-    def test_jacobian_of_the_reservoir(self):
-        model = coupled.together(4)
-        model.step(coupled.DT)
-        model.step(2 * coupled.DT)
+    def test_flow_of_a_host_in_one_jacobian(self):
+        self.assertTrue(own_flow.main(8, 2))  # within 1e-8 of Sprekk's own flow
+
+    def test_jacobian_of_the_flow(self):
+        model = own_flow.together(4)
+        model.step(own_flow.DT)
+        model.step(2 * own_flow.DT)
         errors = model.check_jacobian()
         own = errors[(errors["module"] == "own flow")]
         self.assertGreater(len(own), 3)
