@@ -10,7 +10,7 @@ peer_packages=(python3-{scipy,numba,networkx,shapely,sympy,meshio,h5py,gmsh,tqdm
 viewer_packages=(nodejs npm)  # for the 3D view of reports, bundled once
 docs_packages=(mkdocs mkdocs-material libjs-katex doxygen)
 package_packages=(dpkg-dev file git python3-pip)
-test_packages=(gmsh python3-xarray python3-h5netcdf)  # tests of the documentation and of probes need them
+test_packages=(gmsh python3-{xarray,h5netcdf,sympy})  # for tests of the documentation, of probes and of measurements
 
 # Writes the output of configure_and_build to the log and shows the progress. A terminal gets one updated line with an
 # estimate of the remaining time. Otherwise a line is printed at the first file and after each tenth of the build.
@@ -133,6 +133,7 @@ perf() {
   [[ $name && " $names " == *" $name "* ]] || usage_error "perf needs the name of a measurement, one of: $names${name:+; got \"$name\"}"
   if [[ $name == networks || $name == contact || $name == laws ]]; then needs+=("${mesh_packages[@]}"); fi
   if [[ $name == contact || $name == experiments ]]; then needs+=(python3-scipy); fi
+  if [[ $name == verification ]]; then needs+=(python3-sympy); fi
   if [[ $name == bulk ]]; then needs+=(python3-dolfinx); fi
   if [[ $name == build ]]; then  # builds in a separate copy
     install_missing "${packages[@]}"

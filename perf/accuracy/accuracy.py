@@ -9,7 +9,7 @@ import style
 
 from perf.common import options as common
 from perf.common import program, table
-from perf.verification import exact, meshes
+from perf.verification import exact, meshes, scenes
 
 ROOT = program.ROOT
 
@@ -160,7 +160,7 @@ def start(options, case, order, source, asked, label, others=()):
             sets.append("{}.{}={}".format(goal, *case.fractures.split()))
         elif case.fractures:
             sets.append(f"{goal}.fractures={{{case.fractures}}}")
-    scene = unasked(ROOT / "xml" / case.scene, options.output / "meshes")
+    scene = unasked(scenes.path(case.scene, options.output / "scenes"), options.output / "meshes")
     return program.succeeded(options.binary, scene, directory, sets, options.ranks, clock=TIME_LIMIT).results
 
 

@@ -1,15 +1,17 @@
 """Writes a scene, given as a tree of sections and entries, as XML."""
 import xml.etree.ElementTree as xml
 
+KINDS = {str: "string", bool: "bool", int: "int", float: "double"}  # bool is a subclass of int
+
 
 def written(value):
     """Returns the XML type and text of an entry."""
     if isinstance(value, (list, tuple)):
         kinds = {written(v)[0] for v in value}
-        kind = "string" if "string" in kinds else "double" if "double" in kinds else "int"
+        kind = next(kind for kind in ("string", "double", "int", "bool") if kind in kinds)
         return f"Array({kind})", "{" + ", ".join(written(v)[1] for v in value) + "}"
-    kind = {str: "string", bool: "bool", int: "int", float: "double"}[type(value)]
-    return kind, value if kind == "string" else str(value).lower() if kind == "bool" else repr(value)
+    kind = next(kind for of, kind in KINDS.items() if isinstance(value, of))
+    return kind, repr(float(value)) if kind == "double" else str(value).lower() if kind == "bool" else str(value)
 
 
 def section(name, content):

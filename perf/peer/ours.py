@@ -7,7 +7,7 @@ import read
 
 from perf.common import program
 from perf.peer.runs import FUNCTIONALS, THERMAL, Run
-from perf.verification import exact, flow_cases, flow_measure, measure, meshes
+from perf.verification import exact, flow_cases, flow_measure, measure, meshes, scenes
 
 COUNTED = ("mesh", "set-up", "set-up_of_the_solver", "time_steps")  # consecutive phases
 MEAN = "mean pressure"
@@ -77,7 +77,7 @@ def crack(options, mode, file, name, *sets):
 def flow(options, kind, cell, n):
     """Run with the mean pressure in the rock of the regular network, with n equal cells along an edge."""
     sets = (f"Mesh.cell={cell}", f"Mesh.cells={{{n}, {n}}}", *flow_cases.JOINTS[kind])
-    directory, results, seconds = run(options, "verification/flow_regular_2d.xml", sets, f"flow_{kind}_{cell}_{n}")
+    directory, results, seconds = run(options, scenes.path("verification/flow_regular_2d.xml", options.output / "scenes"), sets, f"flow_{kind}_{cell}_{n}")
     rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
     return made(results, seconds, values={MEAN: float(flow_measure.array(measure.Run(results, rock, None, 2), "pressure").mean())})
 

@@ -1,11 +1,6 @@
-"""Writes the flow scenes of this measurement and their coarse meshes into xml/verification. Requires SymPy and gmsh."""
-import sys
-
-from perf.verification import make_scenes, manufactured, meshes
-
-
-def write(name, comment, content):
-    make_scenes.write(name, comment, content, "flow_scenes.py")
+"""Scenes of flow, see scenes.py."""
+from perf.verification import meshes
+from perf.verification.scenes import mesh_file
 
 
 def scene(mesh, joints, fractures, conditions, rocks=None, regions=None, fluid=None):
@@ -40,6 +35,7 @@ def across(d, axis, at, low=0.0, high=1.0):
 
 
 def manufactured_solutions():
+    from perf.verification import manufactured
     for d in (2, 3):
         for name, resists in (("resistance", True), ("continuous", False)):
             known, last = manufactured.flow(d, int(resists)), "xyz"[d - 1]
@@ -49,11 +45,11 @@ def manufactured_solutions():
             conditions = {f"{half} {side}": {"boundary": side, "region": half, "pressure": known[half]} for half in halves for side in [*sides(d - 1), ends[half]]}
             conditions.update({f"fracture {side}": {"boundary": side, "fracture": "fracture", "pressure": known["fracture"]} for side in sides(d - 1)})
             source = f"{last}>0.5 ? ({known['above source']}) : ({known['below source']})"
-            write(f"flow_{name}_{d}d", f"A manufactured solution of flow through rock and along a fracture{' with a resistance across it' if resists else ''}. "
-                  "See perf/verification/flow_exact.py.",
-                  scene(box(d, 4, {"fracture": across(d, d - 1, 0.5)}, halves), {"joint": joint},
-                        {"fracture": {"material": "joint", "source": known["fracture source"]}}, conditions,
-                        regions={half: "rock" for half in halves}, fluid={"viscosity": 0.5, "source": source}))
+            yield (f"flow_{name}_{d}d", f"A manufactured solution of flow through rock and along a fracture{' with a resistance across it' if resists else ''}. "
+                   "See perf/verification/flow_exact.py.",
+                   scene(box(d, 4, {"fracture": across(d, d - 1, 0.5)}, halves), {"joint": joint},
+                         {"fracture": {"material": "joint", "source": known["fracture source"]}}, conditions,
+                         regions={half: "rock" for half in halves}, fluid={"viscosity": 0.5, "source": source}))
 
 
 def potential(r, kept, along, part):
@@ -63,7 +59,7 @@ def potential(r, kept, along, part):
 
 
 def single_fracture():
-    mesh = make_scenes.mesh_file("sneddon", "crack")
+    mesh = mesh_file("crack")
     size, w = "sqrt(((x-1)^2+y^2)*((x+1)^2+y^2))", "(x^2-y^2-1)"
     r = [f"(x<0 ? -1 : 1)*sqrt(max({size}+{w},0)/2)", f"(y<0 ? -1 : 1)*sqrt(max({size}-{w},0)/2)"]
     for name, what, joint, along, part in (
@@ -72,20 +68,19 @@ def single_fracture():
         parameter, kept = (("T0", "2/(T0(0)+2)"), ("c0", "2*c0(0)/(1+2*c0(0))"))[part]
         content = scene(mesh, {"joint": joint}, {"crack": "joint"}, {"far": {"boundary": "boundary", "pressure": potential(r, kept, along, part)}})
         content["Tables"] = {parameter: {"arguments": [0.0, 1.0], "values": [1.0, 1.0]}}
-        write(f"flow_{name}", f"Flow {what} a fracture in an infinite plane. The exact pressure is prescribed on the boundary of the box.", content)
+        yield (f"flow_{name}", f"Flow {what} a fracture in an infinite plane. The exact pressure is prescribed on the boundary of the box.", content)
 
 
 def patches():
-    meshes.network(make_scenes.FOLDER, 0.3).rename(make_scenes.FOLDER / "flow_patch.msh")
     joints = {"wide": {"initial aperture": 0.5, "residual aperture": 2.0}, "filled": {"initial aperture": 0.5, "tangential permeability": 6.0},
               "tight": {"initial aperture": 0.01, "tangential permeability": 1e-3}}
     linear = "1 + 0.7*x - 0.4*y"
-    write("flow_patch_2d", "A constant pressure gradient in rock with straight, intersecting fractures.",
-          scene(make_scenes.mesh_file("flow_patch", *meshes.NETWORK), joints, dict(zip(meshes.NETWORK, joints)), {"all": {"boundary": "boundary", "pressure": linear}}))
+    yield ("flow_patch_2d", "A constant pressure gradient in rock with straight, intersecting fractures.",
+           scene(mesh_file(*meshes.NETWORK), joints, dict(zip(meshes.NETWORK, joints)), {"all": {"boundary": "boundary", "pressure": linear}}))
     fractures = {name: across(3, axis, at) for axis, (name, at) in enumerate((("x", 0.5), ("y", 0.25), ("z", 0.5)))}
     conditions = {side: {"boundary": side, "pressure": linear + " + 0.3*z"} for side in sides(3)}
-    write("flow_patch_3d", "A constant pressure gradient in a rotated block of rock with plane, intersecting fractures.",
-          scene(box(3, 4, fractures, rotation=30.0, **{"rotation axis": [1.0, 1.0, 0.0]}), joints, dict(zip(fractures, joints)), conditions))
+    yield ("flow_patch_3d", "A constant pressure gradient in a rotated block of rock with plane, intersecting fractures.",
+           scene(box(3, 4, fractures, rotation=30.0, **{"rotation axis": [1.0, 1.0, 0.0]}), joints, dict(zip(fractures, joints)), conditions))
 
 
 CONDUCTIVE = {"initial aperture": 1e-4, "tangential permeability": 1e4, "normal permeability": 1e4}
@@ -94,9 +89,9 @@ CONDUCTIVE = {"initial aperture": 1e-4, "tangential permeability": 1e4, "normal 
 def regular():
     lines = {"x1": ([0.5, 0.0], [0.5, 1.0]), "y1": ([0.0, 0.5], [1.0, 0.5]), "x2": ([0.75, 0.5], [0.75, 1.0]), "y2": ([0.5, 0.75], [1.0, 0.75]),
              "x3": ([0.625, 0.5], [0.625, 0.75]), "y3": ([0.5, 0.625], [0.75, 0.625])}
-    write("flow_regular_2d", "Benchmark 1 of Flemisch et al. (2018): a regular network.",
-          scene(box(2, 16, lines), {"joint": CONDUCTIVE}, dict.fromkeys(lines, "joint"),
-                {"inflow": {"boundary": "west", "flux": -1.0}, "outflow": {"boundary": "east", "pressure": 1.0}}))
+    yield ("flow_regular_2d", "Benchmark 1 of Flemisch et al. (2018): a regular network.",
+           scene(box(2, 16, lines), {"joint": CONDUCTIVE}, dict.fromkeys(lines, "joint"),
+                 {"inflow": {"boundary": "west", "flux": -1.0}, "outflow": {"boundary": "east", "pressure": 1.0}}))
     planes = {f"{name}{k}": across(3, axis, at, low, high) for axis, name in enumerate("xyz")
               for k, (at, low, high) in enumerate(((0.5, 0.0, 1.0), (0.75, 0.5, 1.0), (0.625, 0.5, 0.75)), 1)}
     regions = {"tight 1": ([0.5, 0.0, 0.0], [1.0, 0.5, 1.0]), "tight 2": ([0.75, 0.5, 0.5], [1.0, 0.75, 1.0]),
@@ -104,9 +99,9 @@ def regular():
     rest = {"west": "y<0.25 && z<0.25", "south": "x<0.25 && z<0.25", "bottom": "x<0.25 && y<0.25"}
     conditions = {f"inflow {side}": {"boundary": side, "flux": f"{where} ? -1 : 0"} for side, where in rest.items()}
     conditions.update({f"outflow {side}": {"boundary": side, "region": "outlet", "pressure": 1.0} for side in ("east", "north", "top")})
-    write("flow_regular_3d", "Benchmark 2 of Berre et al. (2021): a regular network.",
-          scene(box(3, 8, planes, regions), {"joint": CONDUCTIVE}, dict.fromkeys(planes, "joint"), conditions, {"rock": 1.0, "tight rock": 0.1},
-                {name: "rock" if name == "outlet" else "tight rock" for name in regions}))
+    yield ("flow_regular_3d", "Benchmark 2 of Berre et al. (2021): a regular network.",
+           scene(box(3, 8, planes, regions), {"joint": CONDUCTIVE}, dict.fromkeys(planes, "joint"), conditions, {"rock": 1.0, "tight rock": 0.1},
+                 {name: "rock" if name == "outlet" else "tight rock" for name in regions}))
 
 
 def wells():
@@ -120,25 +115,15 @@ def wells():
         well = {"points": middle, "radius": 0.001, "rate": "-2*pi*a(0)^2"}
         content = scene(box(d, 9, {}), {}, {}, {side: {"boundary": side, "pressure": pressure} for side in sides(2)}, fluid={"Wells": {"well": well}})
         content["Tables"] = {"a": {"arguments": [0.0, 1.0], "values": [1.0, 1.0]}}
-        write(f"flow_well_{d}d", "Flow to a well in an infinite plane. The exact pressure is prescribed on the sides (Thiem 1906).", content)
+        yield (f"flow_well_{d}d", "Flow to a well in an infinite plane. The exact pressure is prescribed on the sides (Thiem 1906).", content)
 
 
 def others():
-    meshes.hydrocoin(make_scenes.FOLDER, 200).rename(make_scenes.FOLDER / "flow_hydrocoin.msh")
     joints = {name: {"initial aperture": width, "tangential permeability": 1e-6, "normal permeability": 1e-6}
               for name, width in (("falling", 5 * 2**0.5), ("steep", 33 / 5**0.5))}
-    write("flow_hydrocoin", "Benchmark 2 of Flemisch et al. (2018): Hydrocoin. Conductivities for permeabilities, heads for pressures.",
-          scene(make_scenes.mesh_file("flow_hydrocoin", *joints), joints, {name: name for name in joints}, {"top": {"boundary": "top", "pressure": "y"}}, {"rock": 1e-8}))
-    meshes.single(make_scenes.FOLDER, 25).rename(make_scenes.FOLDER / "flow_single.msh")
-    write("flow_single", "Benchmark 1 of Berre et al. (2021): a single fracture. Conductivities for permeabilities, heads for pressures.",
-          scene(make_scenes.mesh_file("flow_single", "fracture"), {"joint": {"initial aperture": 0.01, "tangential permeability": 0.1, "normal permeability": 0.1}},
-                {"fracture": "joint"}, {"inlet": {"boundary": "inlet", "pressure": 4.0}, "outlet": {"boundary": "outlet", "pressure": 1.0}},
-                {"rock": 1e-6, "layer": 1e-5}, {"lower": "layer", "upper": "rock"}))
-
-
-if __name__ == "__main__":
-    for make in (manufactured_solutions, single_fracture, patches, wells, regular, others):
-        make()
-    for geo in make_scenes.FOLDER.glob("*.geo"):
-        geo.unlink()
-    sys.exit(0)
+    yield ("flow_hydrocoin", "Benchmark 2 of Flemisch et al. (2018): Hydrocoin. Conductivities for permeabilities, heads for pressures.",
+           scene(mesh_file(*joints), joints, {name: name for name in joints}, {"top": {"boundary": "top", "pressure": "y"}}, {"rock": 1e-8}))
+    yield ("flow_single", "Benchmark 1 of Berre et al. (2021): a single fracture. Conductivities for permeabilities, heads for pressures.",
+           scene(mesh_file("fracture"), {"joint": {"initial aperture": 0.01, "tangential permeability": 0.1, "normal permeability": 0.1}},
+                 {"fracture": "joint"}, {"inlet": {"boundary": "inlet", "pressure": 4.0}, "outlet": {"boundary": "outlet", "pressure": 1.0}},
+                 {"rock": 1e-6, "layer": 1e-5}, {"lower": "layer", "upper": "rock"}))

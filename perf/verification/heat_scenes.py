@@ -1,11 +1,11 @@
-"""Writes the heat scenes of this measurement into xml/verification. Requires SymPy."""
+"""Scenes of heat, see scenes.py."""
 import math
-import sys
 
-from perf.verification import flow_scenes, heat_exact, make_scenes, manufactured, poro_scenes
+from perf.verification import flow_scenes, heat_exact, poro_scenes
 
 
 def sliding_fractures():
+    from perf.verification import manufactured
     made, heat = ({name: float(value) for name, value in of.items()} for of in (manufactured.ROCK, manufactured.HEAT))
     rock = poro_scenes.unit_rock(1.0, porosity=made["porosity"], compressibility_of_pores=made["growth"], Biot_coefficient=made["alpha"],
                                  thermal_conductivity=[heat["conductivity"]], volumetric_heat_capacity=heat["capacity"],
@@ -16,14 +16,14 @@ def sliding_fractures():
         for name, carried, heat_transport in (("carried", 1, "with"), ("conducted", 0, "without")):
             warm = {"initial temperature": heat["start"], "fluid heat capacity": float(carried),
                     "fluid thermal expansion": heat["of fluid expansion"], "heat of friction": True}
-            make_scenes.write(f"manufactured_heat_{name}_{d}d", f"A manufactured solution of rock with a fracture that slides and opens, {heat_transport} heat transport by the fluid. "
-                              "See perf/verification/heat_exact.py.",
-                              poro_scenes.halved_block(d, manufactured.warmed(d, carried), rock, joint, {"viscosity": 0.5}, warm),
-                              "heat_scenes.py", {"end": 1.0, "steps": 2})
+            yield (f"manufactured_heat_{name}_{d}d", f"A manufactured solution of rock with a fracture that slides and opens, {heat_transport} heat transport by the fluid. "
+                   "See perf/verification/heat_exact.py.",
+                   poro_scenes.halved_block(d, manufactured.warmed(d, carried), rock, joint, {"viscosity": 0.5}, warm),
+                   {"end": 1.0, "steps": 2})
 
 
 def sliding_in_time():
-    """Writes the scenes of heat_exact.SlidingInTime, with errors of the time steps only. Lame's constants are 1,
+    """Yields the scenes of heat_exact.SlidingInTime, with errors of the time steps only. Lame's constants are 1,
     the oedometric modulus is M = 3."""
     known = heat_exact.SlidingInTime()
     slip, slides, p, flows = "(1-cos(2*t))/4", "sin(2*t)/2", "sin(3*t)", "3*cos(3*t)"
@@ -45,18 +45,12 @@ def sliding_in_time():
         along = [1.0] if d == 2 else [0.8, 0.6]
         shear = known.friction * known.N
         stress = [0.0, -known.N, 0.0, shear] if d == 2 else [0.0, 0.0, -known.N, 0.0, 0.6 * shear, 0.8 * shear]
-        make_scenes.write(f"heat_time_{d}d", "A fracture that slides, opens and is heated by friction. See perf/verification/heat_exact.py.",
-                          {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock", "initial stress": stress},
-                           "Fractures": {"fracture": {"material": "joint", "source": f"{1 - known.fluid_expansion * known.rise / known.c!r}*{opens}"}},
-                           "Flow": {"viscosity": 1.0, "source": fluid},
-                           "Heat": {"initial temperature": known.start, "fluid heat capacity": known.c, "heat of friction": True,
-                                    "fluid thermal expansion": known.fluid_expansion, "source": f"2*{warms}"},
-                           "Boundary conditions": {"fixed": {"boundary": down, "displacement": [0.0] * d},
-                                                   "moved": {"boundary": up, "displacement": [*(f"{part!r}*{slip}" for part in along), across]}}},
-                          "heat_scenes.py", {"end": 0.5, "steps": 10})
-
-
-if __name__ == "__main__":
-    sliding_fractures()
-    sliding_in_time()
-    sys.exit(0)
+        yield (f"heat_time_{d}d", "A fracture that slides, opens and is heated by friction. See perf/verification/heat_exact.py.",
+               {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock", "initial stress": stress},
+                "Fractures": {"fracture": {"material": "joint", "source": f"{1 - known.fluid_expansion * known.rise / known.c!r}*{opens}"}},
+                "Flow": {"viscosity": 1.0, "source": fluid},
+                "Heat": {"initial temperature": known.start, "fluid heat capacity": known.c, "heat of friction": True,
+                         "fluid thermal expansion": known.fluid_expansion, "source": f"2*{warms}"},
+                "Boundary conditions": {"fixed": {"boundary": down, "displacement": [0.0] * d},
+                                        "moved": {"boundary": up, "displacement": [*(f"{part!r}*{slip}" for part in along), across]}}},
+               {"end": 0.5, "steps": 10})

@@ -1,6 +1,8 @@
 """Displacement and body force of the manufactured solution as expressions of a scene, by symbolic differentiation.
 
 The construction is described in exact.Manufactured; no code is shared with it."""
+from functools import cache
+
 import sympy as sp
 
 COORDINATES = sp.symbols("x y z", real=True)
@@ -68,6 +70,7 @@ def leaving(p, mobility, x):
     return -sum(sp.diff(mobility * sp.diff(p, k), k) for k in x)
 
 
+@cache
 def flow(dimension, resists):
     """Expressions of flow_exact.Manufactured by name: pressures and sources below, above and in the fracture."""
     x = COORDINATES[:dimension]
@@ -84,6 +87,7 @@ def opening(dimension):
     return [sp.cos(first + y) / 5, sp.sin(first - y) / 5][:dimension - 1], sp.Rational(1, 2) + sp.sin(2 * first + y) / 5
 
 
+@cache
 def opened(dimension):
     """Expressions of poro_exact.Opened by name: displacement, body force, pressure and source of both sides;
     pressure and source of the fracture."""
@@ -103,6 +107,7 @@ HEAT = {"conductivity": 3, "capacity": 2, "of filling": 1, "in fracture": 2, "ex
         "start": 3, "dilation": sp.Rational(1, 5)}
 
 
+@cache
 def warmed(dimension, carried):
     """Expressions of heat_exact.Sliding by name: as in opened(), with temperatures of rock and fracture, and heat
     sources."""
@@ -163,6 +168,7 @@ def fluid_source(u, x, p):
     return f"{text(strained)}+exp({text(c * p)})*({text(stored + leaves)})"
 
 
+@cache
 def poro(dimension):
     """Expressions for displacement, body force, pressure and source of poro_exact.Manufactured times t."""
     x = COORDINATES[:dimension]
@@ -176,6 +182,7 @@ def text(expression):
     return str(sp.N(expression, 17)).replace("**", "^").replace(" ", "")
 
 
+@cache
 def expressions(dimension, regime):
     """Returns (displacement of side -, of side +, body force of side -, of side +), each a list of expressions.
 

@@ -78,7 +78,7 @@ class Run:
 
 
 def start(binary, scene, sets, directory, ranks=1):
-    """Runs xml/SCENE with the entries `sets`; returns the last step. Raises Failed if the run fails."""
+    """Runs a scene with the entries `sets`; returns the last step. Raises Failed if the run fails."""
     results = program.succeeded(binary, scene, directory, sets, ranks, clock=TIME_LIMIT).results
     rock = read.grid(read.written_steps(directory, "bulk")[-1][1])
     written = read.written_steps(directory, "fractures")

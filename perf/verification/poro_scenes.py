@@ -1,7 +1,5 @@
-"""Writes the poroelastic scenes of this measurement into xml/verification. Requires SymPy and gmsh."""
-import sys
-
-from perf.verification import flow_scenes, make_scenes, manufactured, meshes, poro_exact
+"""Scenes of poroelasticity, see scenes.py."""
+from perf.verification import flow_scenes, poro_exact, scenes
 
 
 def rock(of):
@@ -15,40 +13,17 @@ def rollers(d, *sides):
     return {side: {"boundary": side, "displacement": ["0" if k == axis[side] else "free" for k in range(d)]} for side in sides}
 
 
-def write(name, comment, box, materials, conditions, time, tables=None):
-    mesh = {"Mesh": {"cell": ("triangle", "tetrahedron")[len(box) - 2], "lower corner": [0.0] * len(box), "upper corner": box, **materials.pop("mesh")}}
-    content = {**({"Tables": tables} if tables else {}), **mesh, "Materials": materials, "Bulk": {"material": next(iter(materials))}, "Flow": {"viscosity": 1e-3}}
-    if "soft" in materials:
-        content["Regions"] = {"middle": {"material": "soft"}}
-    make_scenes.write(name, comment, {**content, "Boundary conditions": conditions}, "poro_scenes.py", time)
-
-
-def columns():
-    known = poro_exact.COLUMN
-    for d in (2, 3):
-        up, sides = "yz"[d - 2], ["west", "east", "south", "north", "bottom", "top"][:2 * d]
-        down, top = sides[-2:]
-        load = {"boundary": top, "traction": [0.0] * (d - 1) + [-known.sigma], "pressure": 0.0}
-        box, cells = [0.2] * (d - 1) + [known.H], [2] * (d - 1) + [10]
-        write(f"terzaghi_{d}d", f"Consolidation of a column along {up} under a load on its drained top (Terzaghi 1923).", box,
-              {"mesh": {"cells": cells}, "rock": rock(known.rock)}, {**rollers(d, *sides[:-1]), "top": load}, {"end": 0.1 / known.rock.c, "steps": 25})
-        middle = {"middle": {"lower corner": [0.0] * (d - 1) + [0.4], "upper corner": [0.2] * (d - 1) + [0.6]}}
-        soft = poro_exact.Rock(known.rock.lam / 10, known.rock.G / 10, 0.0, known.rock.mobility / 100)
-        write(f"layers_{d}d", "A column with a soft layer of low permeability under an undrained load.", box,
-              {"mesh": {"cells": cells, "regions": middle}, "rock": rock(known.rock), "soft": rock(soft)}, {**rollers(d, *sides[:-1]), "top": load},
-              {"end": 1e-6, "steps": 1})
-
-
 def plate():
     known = poro_exact.PLATE
-    write("mandel", "A quarter of a plate between rigid plates (Mandel 1953). The displacement of the upper plate is prescribed; the first step is very short.",
-          [known.a, known.b], {"mesh": {"cells": [20, 2]}, "rock": rock(known.rock)},
-          {**rollers(2, "west", "south"), "drained": {"boundary": "east", "pressure": 0.0}, "plate": {"boundary": "north", "displacement": ["free", "plate(t)"]}},
-          {"schedule": list(poro_exact.mandel_times(25.0))}, {"plate": dict(zip(("arguments", "values"), map(list, known.way(poro_exact.mandel_times(25.0)))))})
-
-
-def store(name, comment, content, time):
-    make_scenes.write(name, comment, content, "poro_scenes.py", time)
+    times = poro_exact.mandel_times(25.0)
+    yield ("mandel", "A quarter of a plate between rigid plates (Mandel 1953). The displacement of the upper plate is prescribed; "
+           "the first step is very short.",
+           {"Tables": {"plate": dict(zip(("arguments", "values"), map(list, known.way(times))))},
+            "Mesh": {"cell": "triangle", "lower corner": [0.0, 0.0], "upper corner": [known.a, known.b], "cells": [20, 2]},
+            "Materials": {"rock": rock(known.rock)}, "Bulk": {"material": "rock"}, "Flow": {"viscosity": 1e-3},
+            "Boundary conditions": {**rollers(2, "west", "south"), "drained": {"boundary": "east", "pressure": 0.0},
+                                    "plate": {"boundary": "north", "displacement": ["free", "plate(t)"]}}},
+           {"schedule": list(times)})
 
 
 def unit_rock(permeability, **more):
@@ -58,19 +33,20 @@ def unit_rock(permeability, **more):
 
 
 def manufactured_solutions():
+    from perf.verification import manufactured
     made = {name: float(value) for name, value in manufactured.ROCK.items()}
     rock = unit_rock(1.0, porosity=made["porosity"], compressibility_of_pores=made["growth"], Biot_coefficient=made["alpha"])
     meshes_of = {"2d": (flow_scenes.box(2, 4, {}), flow_scenes.sides(2)), "3d": (flow_scenes.box(3, 4, {}), flow_scenes.sides(3)),
-                 "gmsh": (make_scenes.mesh_file("square"), ["boundary"])}
+                 "gmsh": (scenes.mesh_file(), ["boundary"])}
     for name, (mesh, sides) in meshes_of.items():
         d = 3 if name == "3d" else 2
         _, force, _, source = manufactured.poro(d)
         still = {side: {"boundary": side, "displacement": [0.0] * d, "pressure": 0.0} for side in sides}
         comment = "A manufactured solution of poroelasticity (Nordbotten 2016). See perf/verification/poro_exact.py."
-        store(f"manufactured_poro_{name}", comment,
-              {**mesh, "Materials": {"rock": rock}, "Bulk": {"material": "rock", "body force": force},
-               "Flow": {"viscosity": 1.0, "compressibility": made["compressibility"], "source": source}, "Boundary conditions": still},
-              {"end": 1.0, "steps": 2})
+        yield (f"manufactured_poro_{name}", comment,
+               {**mesh, "Materials": {"rock": rock}, "Bulk": {"material": "rock", "body force": force},
+                "Flow": {"viscosity": 1.0, "compressibility": made["compressibility"], "source": source}, "Boundary conditions": still},
+               {"end": 1.0, "steps": 2})
 
 
 def halved_block(d, known, rock, joint, flow, heat=None):
@@ -101,12 +77,13 @@ def halved_block(d, known, rock, joint, flow, heat=None):
 
 
 def opened_fractures():
+    from perf.verification import manufactured
     growth, alpha = (float(manufactured.ROCK[name]) for name in ("growth", "alpha"))
     rock = unit_rock(1.0, compressibility_of_pores=growth, Biot_coefficient=alpha)
     joint = {"friction coefficient": 0.5, "initial gap": -0.1, "initial aperture": 1.0}
     for d in (2, 3):
-        store(f"manufactured_opening_{d}d", "A manufactured solution of rock with a fracture opened by fluid pressure. See perf/verification/poro_exact.py.",
-              halved_block(d, manufactured.opened(d), rock, joint, {"viscosity": 0.5}), {"end": 1.0, "steps": 2})
+        yield (f"manufactured_opening_{d}d", "A manufactured solution of rock with a fracture opened by fluid pressure. See perf/verification/poro_exact.py.",
+               halved_block(d, manufactured.opened(d), rock, joint, {"viscosity": 0.5}), {"end": 1.0, "steps": 2})
 
 
 def joint_of(known):
@@ -118,7 +95,7 @@ def joint_of(known):
 
 
 def joined_block(name, known, d, comment):
-    """Writes a block whose fracture has the pressure of a well; the rock is almost impermeable."""
+    """Yields a block whose fracture has the pressure of a well; the rock is almost impermeable."""
     down, up = flow_scenes.sides(d)[-2:]
     path, (along, across) = known.path(), known.way
     stress = {2: [0.0, -known.N0, 0.0, known.T0], 3: [0.0, 0.0, -known.N0, 0.0, 0.6 * known.T0, 0.8 * known.T0]}[d]
@@ -128,60 +105,60 @@ def joined_block(name, known, d, comment):
             "Biot coefficient": 0.0, "compressibility of pores": 0.0}
     well = {"points": [0.4, 0.5] if d == 2 else [0.4, 0.4, 0.4, 0.4, 0.4, 0.6], "radius": 1e-3, "pressure": "p(t)"}
     moved = [along, across] if d == 2 else [0.8 * along, 0.6 * along, across]
-    store(f"fluid_{name}_{d}d", comment,
-          {"Tables": {"p": {"arguments": list(range(len(path))), "values": path}}, **mesh,
-           "Materials": {"rock": rock, "joint": joint_of(known)},
-           "Bulk": {"material": "rock", **({"initial stress": stress} if known.N0 else {})},
-           "Fractures": {"fracture": {"material": "joint"}}, "Flow": {"viscosity": 1e-12, "Wells": {"well": well}},
-           "Boundary conditions": {"fixed": {"boundary": down, "displacement": [0.0] * d},
-                                   "moved": {"boundary": up, "displacement": moved}}},
-          {"start": 0.0, "schedule": [float(k) for k in range(1, len(path))]})
+    yield (f"fluid_{name}_{d}d", comment,
+           {"Tables": {"p": {"arguments": list(range(len(path))), "values": path}}, **mesh,
+            "Materials": {"rock": rock, "joint": joint_of(known)},
+            "Bulk": {"material": "rock", **({"initial stress": stress} if known.N0 else {})},
+            "Fractures": {"fracture": {"material": "joint"}}, "Flow": {"viscosity": 1e-12, "Wells": {"well": well}},
+            "Boundary conditions": {"fixed": {"boundary": down, "displacement": [0.0] * d},
+                                    "moved": {"boundary": up, "displacement": moved}}},
+           {"start": 0.0, "schedule": [float(k) for k in range(1, len(path))]})
 
 
 def joined_blocks():
     for d in (2, 3):
-        joined_block("block", poro_exact.CONFINED, d,
-                     "A block with a fracture under compression and shear. The fluid pressure rises until the fracture slides and opens.")
-        joined_block("onset", poro_exact.STRESSED, d,
-                     "A fracture under a compression of 60 MPa and a shear stress of 20 MPa. The fluid pressure rises until the "
-                     "fracture slides and opens.")
+        yield from joined_block("block", poro_exact.CONFINED, d,
+                                "A block with a fracture under compression and shear. The fluid pressure rises until the fracture slides and opens.")
+        yield from joined_block("onset", poro_exact.STRESSED, d,
+                                "A fracture under a compression of 60 MPa and a shear stress of 20 MPa. The fluid pressure rises until the "
+                                "fracture slides and opens.")
 
 
 def filled_cracks():
-    """Writes the scenes of cracks that are filled in the first of two steps.
+    """Yields the scenes of cracks that are filled in the first of two steps.
 
     The displacement on the box is that of the crack with the injected volume. The crack has an initial opening
     of 1e-4: a closed crack would have no volume for an incompressible fluid."""
-    displacements = {2: make_scenes.crack_displacement(1, 0.5 * poro_exact.FILLED, 0.25),
-                     3: make_scenes.penny_displacement(poro_exact.FILLED, 0.25)}
+    displacements = {2: scenes.crack_displacement(1, 0.5 * poro_exact.FILLED, 0.25),
+                     3: scenes.penny_displacement(poro_exact.FILLED, 0.25)}
     joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -1e-4, "initial aperture": 1e-4}
-    for d, mesh, name in ((2, "sneddon", "A crack"), (3, "penny", "A penny-shaped crack")):
+    for d, name in ((2, "A crack"), (3, "A penny-shaped crack")):
         well = {"points": [0.0, 0.0] if d == 2 else [0.0, 0.0, -0.1, 0.0, 0.0, 0.1], "radius": 1e-6,
                 "rate": f"t<0.75 ? {2 * poro_exact.filling(d, 0.25)!r} : 0"}
-        store(f"crack_volume_{d}d", f"{name} that stores all of the fluid injected by a well (Sneddon 1946).",
-              {**make_scenes.mesh_file(mesh, "crack", normal=[0.0] * (d - 1) + [1.0]),
-               "Materials": {"rock": unit_rock(1e-22, Biot_coefficient=0.0, compressibility_of_pores=0.0), "joint": joint},
-               "Bulk": {"material": "rock"}, "Fractures": {"crack": {"material": "joint"}},
-               "Flow": {"viscosity": 1e-13, "Wells": {"well": well}},
-               "Boundary conditions": make_scenes.around([f"min(2*t,1)*({text})" for text in displacements[d]])}, {"end": 1.0, "steps": 2})
+        yield (f"crack_volume_{d}d", f"{name} that stores all of the fluid injected by a well (Sneddon 1946).",
+               {**scenes.mesh_file("crack", normal=[0.0] * (d - 1) + [1.0]),
+                "Materials": {"rock": unit_rock(1e-22, Biot_coefficient=0.0, compressibility_of_pores=0.0), "joint": joint},
+                "Bulk": {"material": "rock"}, "Fractures": {"crack": {"material": "joint"}},
+                "Flow": {"viscosity": 1e-13, "Wells": {"well": well}},
+                "Boundary conditions": scenes.around([f"min(2*t,1)*({text})" for text in displacements[d]])}, {"end": 1.0, "steps": 2})
 
 
 ALPHA, STORED = 0.8, 0.5
 
 
 def rock_in_time():
-    """Writes the scene of poro_exact.InTime, with errors of the time steps only."""
+    """Yields the scene of poro_exact.InTime, with errors of the time steps only."""
     exact = {"displacement": ["sin(2*t)*x", "sin(2*t)*y/2"], "pressure": "sin(3*t)*(1+x-y/2)"}
-    store("poro_time_rock", "Pressure and strain of rock that vary in time and are linear in space. See perf/verification/poro_exact.py.",
-          {**flow_scenes.box(2, 4, {}, cell="quadrilateral"),
-           "Materials": {"rock": unit_rock(0.01, Biot_coefficient=ALPHA, compressibility_of_pores=STORED)},
-           "Bulk": {"material": "rock", "body force": [f"{ALPHA}*sin(3*t)", f"-{ALPHA / 2}*sin(3*t)"]},
-           "Flow": {"viscosity": 1.0, "source": f"{3 * ALPHA}*cos(2*t)+{3 * STORED}*cos(3*t)*(1+x-y/2)"},
-           "Boundary conditions": {side: {"boundary": side, **exact} for side in flow_scenes.sides(2)}}, {"end": 0.5, "steps": 10})
+    yield ("poro_time_rock", "Pressure and strain of rock that vary in time and are linear in space. See perf/verification/poro_exact.py.",
+           {**flow_scenes.box(2, 4, {}, cell="quadrilateral"),
+            "Materials": {"rock": unit_rock(0.01, Biot_coefficient=ALPHA, compressibility_of_pores=STORED)},
+            "Bulk": {"material": "rock", "body force": [f"{ALPHA}*sin(3*t)", f"-{ALPHA / 2}*sin(3*t)"]},
+            "Flow": {"viscosity": 1.0, "source": f"{3 * ALPHA}*cos(2*t)+{3 * STORED}*cos(3*t)*(1+x-y/2)"},
+            "Boundary conditions": {side: {"boundary": side, **exact} for side in flow_scenes.sides(2)}}, {"end": 0.5, "steps": 10})
 
 
 def fracture_in_time():
-    """Writes the scene of poro_exact.OpenInTime.
+    """Yields the scene of poro_exact.OpenInTime.
 
     The strain along z is (alpha - 1)/3 times the pressure; sources are the rates stored by pores and fracture."""
     c, shrinks = 0.3, (1 - ALPHA) / 3
@@ -192,17 +169,8 @@ def fracture_in_time():
     mesh["Mesh"]["cells"] = [2, 2, 4]
     rock = unit_rock(0.01, Biot_coefficient=ALPHA, compressibility_of_pores=STORED, porosity=0.1)
     joint = {"type": "joint", "friction coefficient": 0.5, "initial gap": -0.01, "initial aperture": 0.05}
-    store("poro_time_fracture", "A fracture that opens over time, in a closed block with fluid sources. See perf/verification/poro_exact.py.",
-          {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock"},
-           "Fractures": {"fracture": {"material": "joint", "source": inside}},
-           "Flow": {"viscosity": 1.0, "compressibility": c, "source": source},
-           "Boundary conditions": {**rollers(3, *flow_scenes.sides(3)[:5]), "top": top}}, {"end": 0.5, "steps": 10})
-
-
-if __name__ == "__main__":
-    meshes.square(make_scenes.FOLDER, 0.25).rename(make_scenes.FOLDER / "square.msh")
-    for make in (columns, plate, manufactured_solutions, opened_fractures, joined_blocks, filled_cracks, rock_in_time, fracture_in_time):
-        make()
-    for geo in make_scenes.FOLDER.glob("*.geo"):
-        geo.unlink()
-    sys.exit(0)
+    yield ("poro_time_fracture", "A fracture that opens over time, in a closed block with fluid sources. See perf/verification/poro_exact.py.",
+           {**mesh, "Materials": {"rock": rock, "joint": joint}, "Bulk": {"material": "rock"},
+            "Fractures": {"fracture": {"material": "joint", "source": inside}},
+            "Flow": {"viscosity": 1.0, "compressibility": c, "source": source},
+            "Boundary conditions": {**rollers(3, *flow_scenes.sides(3)[:5]), "top": top}}, {"end": 0.5, "steps": 10})

@@ -11,7 +11,7 @@ import style
 from perf.common import options as common
 from perf.common import table
 from perf.common.program import Failed
-from perf.verification import cases, flow_cases, heat_cases, measure, meshes, poro_cases, poro_fractures
+from perf.verification import cases, flow_cases, heat_cases, measure, meshes, poro_cases, poro_fractures, scenes
 
 CASES = cases.CASES + flow_cases.CASES + poro_cases.CASES + poro_fractures.CASES + heat_cases.CASES
 ESTIMATES = ("jump", "stress")
@@ -41,7 +41,7 @@ def run(options, case, series, label, source):
     folder = options.output / case.name
     entries = source(options.output / "meshes") if callable(source) else source
     directory = folder / re.sub(r"[^\w.+-]+", "_", f"{series.name} {label}")
-    done = measure.start(options.binary, series.scene or case.scene, (*(ESTIMATE if case.jumps else ()), *series.sets, *entries), directory, options.ranks)
+    done = measure.start(options.binary, scenes.path(series.scene or case.scene, options.output / "scenes"), (*(ESTIMATE if case.jumps else ()), *series.sets, *entries), directory, options.ranks)
     steps = done.results["steps"]
     exact = series.exact or case.exact
     errors, effectivity = case.errors(done, exact), measure.effectivity(done, case.jumps(done, exact), exact) if case.jumps else {}

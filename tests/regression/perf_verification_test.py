@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
-"""Measurement perf/verification: perf_verification_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or VTK.
+"""Measurement perf/verification: perf_verification_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy, VTK or SymPy.
 
 The exact solutions satisfy the equations. The scenes prescribe them. The computed errors are correct."""
 import subprocess
 import sys
-from pathlib import Path
 
 import program
 from program import ROOT, ProgramTest, main
 
 try:
     import numpy as np
-    from perf.verification import cases, exact, flow_exact, flow_measure, heat_exact, measure, poro_exact
+    from perf.verification import cases, exact, flow_exact, flow_measure, heat_exact, manufactured, measure, poro_exact, scenes
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -127,10 +126,6 @@ class Exact(ProgramTest):
 
 
     def test_manufactured_rock_is_in_balance_with_its_fluid(self):
-        try:
-            from perf.verification import manufactured
-        except ImportError as error:
-            self.skipTest(str(error))
         functions = {name: getattr(np, name) for name in ("sin", "cos", "exp", "pi")}
         for d in (2, 3):
             known, x, h = poro_exact.Manufactured(d), np.random.default_rng(5).uniform(0.1, 0.9, (20, d)), 1e-4
@@ -166,10 +161,6 @@ class Exact(ProgramTest):
         """Heat in rock and fracture is in balance at t = 0.8, by differences.
 
         The expressions of the scenes are correct."""
-        try:
-            from perf.verification import manufactured
-        except ImportError as error:
-            self.skipTest(str(error))
         functions, h, t = {name: getattr(np, name) for name in ("sin", "cos")}, 1e-4, 0.8
         for d, carried in ((2, 1), (3, 1), (3, 0)):
             made, known, up = manufactured.warmed(d, carried), heat_exact.Sliding(d, carried), np.eye(d)[-1]
@@ -217,7 +208,8 @@ class Scenes(ProgramTest):
         """Runs a case on the mesh of its scene; returns the first run, the case and its exact solution."""
         case = make()
         series = next(s for s in case.series if not s.scene or name in s.scene)
-        return measure.start(program.PROGRAM, f"verification/{name}.xml", (), self.folder / name), case, series
+        mesh = series.meshes[0][1](self.folder) if name == "inclined_crack" else ()
+        return measure.start(program.PROGRAM, scenes.path(f"verification/{name}.xml", self.folder), mesh, self.folder / name), case, series
 
     def test_boundary_values_are_exact(self):
         for make, name in ((cases.sneddon, "sneddon"), (cases.sneddon_shear, "sneddon_shear"), (cases.inclined, "inclined_crack"),
@@ -255,7 +247,7 @@ class Scenes(ProgramTest):
         self.assertAlmostEqual(measure.traction_errors(run, known, [[1, 0]])[1], 0.2, places=12)
 
     def test_pressures_along_lines_are_linear_in_cells(self):
-        run = measure.start(program.PROGRAM, "verification/flow_patch_3d.xml", (), self.folder / "patch")
+        run = measure.start(program.PROGRAM, scenes.path("verification/flow_patch_3d.xml", self.folder), (), self.folder / "patch")
         places = np.random.default_rng(4).uniform(-0.1, 0.1, (20, 3)) + measure.vtk_to_numpy(run.rock.GetPoints().GetData()).mean(axis=0)
         found = flow_measure.pressure_along(run, places, lambda points: np.ones(len(points)))
         self.assertTrue(np.allclose(found, flow_exact.Linear((0.7, -0.4, 0.3)).pressure(places), atol=1e-7))
@@ -291,21 +283,9 @@ class Scenes(ProgramTest):
         self.assertAlmostEqual(measure.area(squares)[0], 6)
         self.assertTrue(np.allclose(measure.face_means(lambda p: p[:, :1] * p[:, 1:2], squares), 1.5))
 
-    def test_scenes_are_those_that_the_script_writes(self):
-        try:
-            from perf.verification import flow_scenes, heat_scenes, make_scenes, poro_scenes
-        except ImportError as error:
-            self.skipTest(str(error))
-        make_scenes.FOLDER = self.folder
-        make_scenes.manufactured_solutions()
-        flow_scenes.manufactured_solutions()
-        flow_scenes.regular()
-        for write in (poro_scenes.manufactured_solutions, poro_scenes.opened_fractures, poro_scenes.joined_blocks,
-                      poro_scenes.filled_cracks, poro_scenes.rock_in_time, poro_scenes.fracture_in_time,
-                      heat_scenes.sliding_fractures, heat_scenes.sliding_in_time):
-            write()
-        for file in self.folder.glob("*.xml"):
-            self.assertEqual(file.read_text(), (ROOT / "xml/verification" / file.name).read_text(), file.name)
+    def test_scenes_of_other_tests_are_those_of_the_measurement(self):
+        for name in ("manufactured_mixed_2d", "manufactured_mixed_3d"):
+            self.assertEqual(scenes.generated(name, self.folder).read_text(), self.scene(f"verification/{name}.xml").read_text())
 
 
 class Table(ProgramTest):
