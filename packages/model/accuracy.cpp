@@ -12,8 +12,8 @@ namespace {
 
 std::vector<estimate::QuantityKind> kinds() {
   std::vector<estimate::QuantityKind> all;
-  physics::for_each_physics([&](auto physics) {
-    for (auto& kind : physics.quantities()) all.push_back(std::move(kind));
+  physics::for_each_physics([&]<physics::HasEstimate P>(P) {
+    for (auto& kind : P::Estimate::quantities()) all.push_back(std::move(kind));
   });
   return all;
 }

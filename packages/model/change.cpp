@@ -126,8 +126,8 @@ std::vector<std::string> refused_changes(const Scene& before, const Scene& after
     lines.push_back(fmt::format("{} > \"{}\": {}", path, name, difference(a, b, name)));
   });
   compare_rock(before, after, fixed, lines);
-  physics::for_each_physics([&](auto physics) {
-    for (const auto& line : physics.refuses_change(before, after)) lines.push_back(line);
+  physics::for_each_physics([&]<physics::HasChange P>(P) {
+    for (const auto& line : P::Change::refuses(before, after)) lines.push_back(line);
   });
   return lines;
 }

@@ -6,8 +6,8 @@ namespace sprekk::model {
 
 estimate::ErrorEstimator make_error_estimator(Model& model) {
   std::vector<std::unique_ptr<estimate::MeshError>> errors;
-  physics::for_each_physics([&](auto physics) {
-    if (auto error = physics.mesh_error(model.setting(), model.system())) errors.push_back(std::move(error));
+  physics::for_each_physics([&]<physics::HasEstimate P>(P) {
+    if (auto error = P::Estimate::mesh_error(model.setting(), model.system())) errors.push_back(std::move(error));
   });
   estimate::ErrorEstimator estimator(model.system(), std::move(errors), model.setting().start,
                                      [&](const fields::BlockVector& x, const fields::BlockVector& right_side,

@@ -43,9 +43,9 @@ void check(const Model& model) {
   SPREKK_CHECK(any && !model.mesh().fracture_names.empty(), "{}: has no joint whose strength could be reduced",
                scene.origin);
   std::vector<std::string> stores;
-  physics::for_each_physics([&](auto physics) {
-    if (physics.has_rates(scene))
-      for (const auto& section : physics.sections_with_rates()) stores.push_back(section);
+  physics::for_each_physics([&]<physics::HasRates P>(P) {
+    if (P::Rates::exist(scene))
+      for (const auto& section : P::Rates::sections()) stores.push_back(section);
   });
   SPREKK_CHECK(!model.system().has_rates(),
                "{}: its balances contain storage, and so it has no equilibrium at a fixed time: leave out {}",

@@ -85,8 +85,8 @@ json fingerprint(const Scene& scene, const assembly::System& system) {
                  {"unknowns", unknowns(system)},
                  {"Time > start", scene.time.start},
                  {"Tables", json::object()}};
-  physics::for_each_physics([&](auto physics) {
-    if (physics.has_rates(scene)) result["Time > scheme"] = scene.time.scheme;
+  physics::for_each_physics([&]<physics::HasRates P>(P) {
+    if (P::Rates::exist(scene)) result["Time > scheme"] = scene.time.scheme;
   });
   for (const auto& named_entry : sections) {
     const std::string& name = named_entry.first;

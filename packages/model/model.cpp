@@ -137,13 +137,15 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   for (const auto& line : misfits(prepared, physics::names_of(*whole_mesh_))) errors.push_back(line);
   base::throw_errors(errors);
   refuse(refused_changes(before, prepared.value));
-  physics::for_each_physics([&](auto physics) { physics.prepare_change(*whole_mesh_, before, prepared.value); });
+  physics::for_each_physics([&]<physics::HasChange P>(P) { P::Change::prepare(*whole_mesh_, before, prepared.value); });
   auto draft = drafted(std::move(prepared.value));
   std::vector<std::string> lines;
-  physics::for_each_physics([&](auto physics) {
-    if (const auto why = physics.no_error_estimate(draft.scene); draft.scene.output.error_estimate && !why.empty())
+  physics::for_each_physics([&]<physics::HasEstimate P>(P) {
+    if (const auto why = P::Estimate::missing(draft.scene); draft.scene.output.error_estimate && !why.empty())
       lines.push_back("Output > \"error estimate\": " + why);
-    for (auto& line : physics.refuses_change_in(*draft.mesh, before, draft.scene)) lines.push_back(std::move(line));
+  });
+  physics::for_each_physics([&]<physics::HasChange P>(P) {
+    for (auto& line : P::Change::refuses_in(*draft.mesh, before, draft.scene)) lines.push_back(std::move(line));
   });
   refuse(lines);
   auto now = drafted(before);  // storage of modules must be read before they are bound
@@ -219,8 +221,8 @@ solve::StepReport Model::advance(Real t) {
   const bool oscillates = base::any_rank(*mesh().comm, [&] {
     return std::find(report.unsettled.begin(), report.unsettled.end(), 1) != report.unsettled.end();
   });
-  physics::for_each_physics([&](auto physics) {
-    for (const auto& doubt : physics.doubts(setting(), oscillates)) report.reason += "; " + doubt;
+  physics::for_each_physics([&]<physics::HasSolvability P>(P) {
+    for (const auto& doubt : P::Solvability::doubts(setting(), oscillates)) report.reason += "; " + doubt;
   });
   return report;
 }

@@ -276,8 +276,8 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   }
   auto outputs = model_.system().outputs(model_.state());
   ends_.push_back(report.time);
-  physics::for_each_physics([&](auto physics) {
-    for (const auto& warning : physics.warnings_of_state(model_.setting(), ends_, outputs))
+  physics::for_each_physics([&]<physics::HasWarnings P>(P) {
+    for (const auto& warning : P::Warnings::of_state(model_.setting(), ends_, outputs))
       if (told_.insert(warning).second) warnings_.push_back(warning);
   });
   add_fractures(step, outputs);

@@ -46,16 +46,16 @@ std::optional<Real> end_of_first_step(const Draft& draft) {
 void compare_scheme(Comparison& comparison, const std::string& scheme) {
   bool rates = scheme == "implicit Euler" || !comparison.is_absent("Time");
   Names absent;
-  physics::for_each_physics([&](auto physics) {
-    rates = rates || physics.has_rates(comparison.scene());
-    for (const auto& section : physics.sections_with_rates()) absent.push_back(section);
+  physics::for_each_physics([&]<physics::HasRates P>(P) {
+    rates = rates || P::Rates::exist(comparison.scene());
+    for (const auto& section : P::Rates::sections()) absent.push_back(section);
   });
   for (const auto& section : absent) rates = rates || !comparison.is_absent(section);
   if (!rates)
     comparison.fail("Time > \"scheme\"",
                     fmt::format("is \"{}\": needs the section \"{}\"", scheme, fmt::join(absent, "\" or \"")));
-  physics::for_each_physics([&](auto physics) {
-    const auto entry = physics.needs_implicit_euler(comparison.scene());
+  physics::for_each_physics([&]<physics::HasRates P>(P) {
+    const auto entry = P::Rates::implicit_euler(comparison.scene());
     if (!entry.empty() && scheme != "implicit Euler")
       comparison.fail("Time > \"scheme\"", fmt::format("is \"{}\": {} requires implicit Euler", scheme, entry));
   });
@@ -63,11 +63,11 @@ void compare_scheme(Comparison& comparison, const std::string& scheme) {
 
 void compare_error_estimate(Comparison& comparison, const std::string& place, const Scene& scene) {
   bool any_quantity = false, any_flux = false;
-  physics::for_each_physics([&](auto physics) {
-    if (const auto why = physics.no_error_estimate(scene); !why.empty()) comparison.fail(place, why);
-    if (!physics.is_in(scene)) return;
-    any_quantity = any_quantity || !physics.quantities().empty();
-    any_flux = any_flux || physics.needs_facets(scene);
+  physics::for_each_physics([&]<physics::HasEstimate P>(P) {
+    if (const auto why = P::Estimate::missing(scene); !why.empty()) comparison.fail(place, why);
+    if (!P::is_in(scene)) return;
+    any_quantity = any_quantity || !P::Estimate::quantities().empty();
+    any_flux = any_flux || P::needs_facets(scene);
   });
   if (!any_quantity) comparison.fail(place, "has nothing to estimate in this scene");
   const auto& cell = scene.mesh.cell;
@@ -90,12 +90,12 @@ void compare_accuracy(Comparison& comparison, const Scene& scene) {
       comparison.fail(place + " > \"component\"", "is z, must be x or y in 2D");
     std::vector<std::string> known;
     std::optional<std::string> refused;
-    physics::for_each_physics([&](auto physics) {
-      if (!physics.is_in(comparison.scene())) return;
+    physics::for_each_physics([&]<physics::HasEstimate P>(P) {
+      if (!P::is_in(comparison.scene())) return;
       std::vector<std::string> names;
-      for (const auto& kind : physics.quantities()) names.push_back(kind.name);
+      for (const auto& kind : P::Estimate::quantities()) names.push_back(kind.name);
       known.insert(known.end(), names.begin(), names.end());
-      if (physics::has(names, quantity.what)) refused = physics.refuses(comparison.scene(), quantity);
+      if (physics::has(names, quantity.what)) refused = P::Estimate::refuses(comparison.scene(), quantity);
     });
     const auto why =
         refused.value_or(fmt::format("\"quantity\": is \"{}\", which the scene does not contain; it contains {}",

@@ -90,9 +90,9 @@ std::vector<std::string> Model::warnings() const {
   const auto add = [&](const std::vector<std::string>& some) { all.insert(all.end(), some.begin(), some.end()); };
   add(physics::conditions_that_hold_nowhere(scene_, mesh()));
   add(physics::properties_passed_over(scene_, mesh()));
-  physics::for_each_physics([&](auto physics) { add(physics.doubts(setting(), true)); });
+  physics::for_each_physics([&]<physics::HasSolvability P>(P) { add(P::Solvability::doubts(setting(), true)); });
   physics::for_each_physics([&](auto physics) { add(physics.warnings(setting())); });
-  physics::for_each_physics([&](auto physics) { add(physics.plausibility(setting(), times)); });
+  physics::for_each_physics([&]<physics::HasWarnings P>(P) { add(P::Warnings::of_input(setting(), times)); });
   add(steps_across_knots(scene_));
   add(stages_after_the_end(scene_));
   return all;

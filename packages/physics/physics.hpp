@@ -54,14 +54,135 @@ struct CarriedQuantity : transport::Carried {
   std::function<std::vector<Real>(const Setting&)> stored_in_cells = {}, stored_in_fractures = {};
 };
 
-/// Base class of each physics, with defaults for all members. A physics is a folder of packages/physics and a line in
-/// list.hpp. It hides the members that it needs:
+/// Groups of optional functions. A physics offers a group by a nested struct, for example `Rates`, that defines all
+/// functions of the group as static functions. RatesFunctions lists their signatures, IsRates compares a struct with
+/// them, and HasRates is true for a physics with this struct.
+
+/// Rates: storage of quantities, which uses the time integration scheme.
+struct RatesFunctions {
+  /// The scene has such quantities
+  bool (*exist)(const Scene&);
+  /// Names of the sections that require the scheme
+  std::vector<std::string> (*sections)();
+  /// Name of the entry that requires implicit Euler as scheme; empty: none
+  std::string (*implicit_euler)(const Scene&);
+};
+template <class Group>
+concept IsRates = requires {
+  RatesFunctions{&Group::exist, &Group::sections, &Group::implicit_euler};
+};
+template <class P>
+concept HasRates = requires {
+  typename P::Rates;
+};
+
+/// Transport: transport by the fluid of Flow, and sources of the transported quantity.
+struct TransportFunctions {
+  /// Transported quantities
+  std::vector<CarriedQuantity> (*carried)(const Scene&);
+  /// Facet field whose fracture balance receives the power dissipated by sliding; empty: none
+  std::string (*friction_power)(const Scene&);
+};
+template <class Group>
+concept IsTransport = requires {
+  TransportFunctions{&Group::carried, &Group::friction_power};
+};
+template <class P>
+concept HasTransport = requires {
+  typename P::Transport;
+};
+
+/// Estimate: error estimates of unknowns and of quantities.
+struct EstimateFunctions {
+  /// Reason why the estimate is not available; empty: it is available
+  std::string (*missing)(const Scene&);
+  /// Quantities with an estimate; their names are values of Functional::what
+  std::vector<estimate::QuantityKind> (*quantities)();
+  /// Reason why a quantity has no estimate, preceded by the location of the entry if there is one; empty: it has one
+  std::string (*refuses)(const Scene&, const estimate::Functional&);
+  /// Spatial error estimator, which holds a reference to the system; null: none. Collective.
+  std::unique_ptr<estimate::MeshError> (*mesh_error)(const Setting&, assembly::System&);
+};
+template <class Group>
+concept IsEstimate = requires {
+  EstimateFunctions{&Group::missing, &Group::quantities, &Group::refuses, &Group::mesh_error};
+};
+template <class P>
+concept HasEstimate = requires {
+  typename P::Estimate;
+};
+
+/// Change: change of the scene of a live model, beyond fixed_entries(). Reasons against it are one per line.
+struct ChangeFunctions {
+  /// Reasons that follow from the scenes alone
+  std::vector<std::string> (*refuses)(const Scene& before, const Scene& after);
+  /// Reasons that depend on the mesh of the changed scene. Collective.
+  std::vector<std::string> (*refuses_in)(const mesh::Mesh&, const Scene& before, const Scene& after);
+  /// Copies data that are not entries; `whole`: mesh with excavated regions. Collective.
+  void (*prepare)(const mesh::Mesh& whole, const Scene& before, Scene& after);
+};
+template <class Group>
+concept IsChange = requires {
+  ChangeFunctions{&Group::refuses, &Group::refuses_in, &Group::prepare};
+};
+template <class P>
+concept HasChange = requires {
+  typename P::Change;
+};
+
+/// Warnings: implausible input and states, one warning per line; see implausible(). Collective.
+struct WarningsFunctions {
+  /// Input of a scene. `times`: end times of all steps, s
+  std::vector<std::string> (*of_input)(const Setting&, const std::vector<Real>& times);
+  /// State at the end of a step, with the same text in each step. `times`: start time and end times of the steps so
+  /// far, s
+  std::vector<std::string> (*of_state)(const Setting&, const std::vector<Real>& times,
+                                       const std::vector<assembly::OutputField>& outputs);
+};
+template <class Group>
+concept IsWarnings = requires {
+  WarningsFunctions{&Group::of_input, &Group::of_state};
+};
+template <class P>
+concept HasWarnings = requires {
+  typename P::Warnings;
+};
+
+/// Solvability: existence and uniqueness of solutions.
+struct SolvabilityFunctions {
+  /// Reasons against them. `oscillates`: contact states of faces alternate between iterates of Newton's method.
+  /// Collective.
+  std::vector<std::string> (*doubts)(const Setting&, bool oscillates);
+};
+template <class Group>
+concept IsSolvability = requires {
+  SolvabilityFunctions{&Group::doubts};
+};
+template <class P>
+concept HasSolvability = requires {
+  typename P::Solvability;
+};
+
+/// Compiles only if each group of a physics has all of its functions, with these signatures.
+template <class P>
+constexpr bool has_complete_groups() {
+  if constexpr (HasRates<P>) static_assert(IsRates<typename P::Rates>);
+  if constexpr (HasTransport<P>) static_assert(IsTransport<typename P::Transport>);
+  if constexpr (HasEstimate<P>) static_assert(IsEstimate<typename P::Estimate>);
+  if constexpr (HasChange<P>) static_assert(IsChange<typename P::Change>);
+  if constexpr (HasWarnings<P>) static_assert(IsWarnings<typename P::Warnings>);
+  if constexpr (HasSolvability<P>) static_assert(IsSolvability<typename P::Solvability>);
+  return true;
+}
+
+/// Base class of each physics, with defaults for all members except groups. A physics is a folder of packages/physics
+/// and a line in list.hpp. It hides the members that it needs:
 ///
 /// - Parts of existing sections: Rock and Joint (of a material), Bulk, Region, Fracture, BoundaryCondition and Probe.
 ///   Their members become members of physics::Material and so on. `Sections` contains the sections of the physics;
 ///   its members become members of physics::Scene. describe() declares the entries. check() compares the entries after
 ///   the whole section has been read.
-/// - Functions. They are called for each physics in the order of the list.
+/// - Functions, and groups of functions (see above). They are called for each physics in the order of the list.
 template <class Self>
 struct Physics {
   template <int>
@@ -91,38 +212,11 @@ struct Physics {
   static bool is_in(const Scene&) { return false; }
   /// Returns whether this physics has unknowns on facets.
   static bool needs_facets(const Scene&) { return false; }
-  /// Returns whether this physics stores a quantity and therefore uses the time integration scheme.
-  static bool has_rates(const Scene&) { return false; }
   /// Returns whether the scene defines the initial unknowns. Otherwise they have no meaning before the first step.
   static bool has_initial_state(const Scene&) { return true; }
-  /// Names of the sections that require the time integration scheme.
-  static std::vector<std::string> sections_with_rates() { return {}; }
-  /// Name of the entry that requires implicit Euler as time integration scheme; empty: none.
-  static std::string needs_implicit_euler(const Scene&) { return ""; }
-  /// Reason why an error estimate is not available; empty: it is available.
-  static std::string no_error_estimate(const Scene&) { return ""; }
-  /// Quantities with an error estimate; their names are values of Functional::what.
-  static std::vector<estimate::QuantityKind> quantities() { return {}; }
-  /// Reason why a quantity has no error estimate, preceded by the location of the entry if there is one; empty: it has
-  /// one.
-  static std::string refuses(const Scene&, const estimate::Functional&) { return ""; }
-  /// Creates the spatial error estimator; null: none. The result holds a reference to the system. Collective.
-  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting&, assembly::System&) { return nullptr; }
-  /// Quantities that the fluid transports for this physics.
-  static std::vector<CarriedQuantity> carried(const Scene&) { return {}; }
-  /// Facet field whose fracture balance receives the power dissipated by sliding; empty: none.
-  static std::string takes_friction_power(const Scene&) { return ""; }
   /// Names of entries that must not change when the scene of a live model changes. The state is measured relative to
   /// these entries, or would have another meaning with other values.
   static std::vector<std::string> fixed_entries() { return {}; }
-  /// Further reasons why a live model cannot adopt a changed scene, beyond fixed_entries(), one per line.
-  static std::vector<std::string> refuses_change(const Scene& before, const Scene& after) { return {}; }
-  /// Further reasons that depend on the mesh of the changed scene. Collective.
-  static std::vector<std::string> refuses_change_in(const mesh::Mesh&, const Scene& before, const Scene& after) {
-    return {};
-  }
-  /// Copies data that are not entries into the scene with which a live model continues. Collective.
-  static void prepare_change(const mesh::Mesh& whole, const Scene& before, Scene& after) {}
   /// Reports inconsistencies of the scene.
   static void compare(Comparison&) {}
   /// Reports inconsistencies of conditions on a mesh that has all of their names. Not collective.
@@ -131,18 +225,6 @@ struct Physics {
   static void add_modules(const Setting&, Modules&) {}
   /// Returns possible errors of a scene with a mesh, one per line. Collective.
   static std::vector<std::string> warnings(const Setting&) { return {}; }
-  /// Returns warnings about implausible input, one per line; see implausible(). `times`: end times of all steps.
-  /// Collective.
-  static std::vector<std::string> plausibility(const Setting&, const std::vector<Real>& times) { return {}; }
-  /// Returns warnings about the state at the end of a step, given its outputs. The text is the same in each step.
-  /// `times`: start time and end times of the steps so far, s. Collective.
-  static std::vector<std::string> warnings_of_state(const Setting&, const std::vector<Real>& times,
-                                                    const std::vector<assembly::OutputField>&) {
-    return {};
-  }
-  /// Returns reasons why a solution may not exist or may not be unique. `oscillates`: contact states of faces alternate
-  /// between iterates of Newton's method. Collective.
-  static std::vector<std::string> doubts(const Setting&, bool oscillates) { return {}; }
 };
 
 }  // namespace sprekk::physics

@@ -8,6 +8,7 @@
 #include "physics/list.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <map>
 #include <optional>
 #include <string>
@@ -82,15 +83,20 @@ struct Sections : P::Sections... {
 
 template <class... P>
 struct Each {
+  static_assert((has_complete_groups<P>() && ...));
   template <class Call>
   static void call(const Call& call) {
-    (call(P()), ...);
+    const auto call_if_accepted = [&](auto physics) {
+      if constexpr (std::invocable<Call, decltype(physics)>) call(physics);
+    };
+    (call_if_accepted(P()), ...);
   }
 };
 
 }  // namespace detail
 
-/// Calls call(P()) for each physics P.
+/// Calls call(P()) for each physics P that `call` accepts, for example `[&]<HasRates P>(P) { ... }`. Does not compile
+/// if a group of a physics lacks a function or has one with a wrong signature.
 template <class Call>
 void for_each_physics(const Call& call) {
   OfAll<detail::Each>::call(call);

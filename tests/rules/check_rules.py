@@ -69,8 +69,9 @@ KERNEL_MACRO = r"KOKKOS_(?:CLASS_)?LAMBDA|KOKKOS_(?:FORCE)?(?:INLINE_)?FUNCTION"
 IMMUTABLE = r"(?:[\w:<>,\s*&]*\b(?:const|constexpr)\b)"
 STATIC = re.compile(r"^[ \t]*(?:inline[ \t]+)?(?:static|thread_local)\b(?!_)(?P<rest>[^;{=]*(?:[;{=]))", re.MULTILINE)
 GLOBAL = re.compile(
-    r"^(?!(?:using|namespace|template|struct|class|enum|union|typedef|return|friend|extern|static|thread_local|public"
-    r"|private|protected|case|default|goto|else|delete)\b)(?:inline[ \t]+)?[A-Za-z_][\w:]*(?:<[^;(){}]*>)?[ \t*&]+"
+    r"^(?!(?:using|namespace|template|concept|struct|class|enum|union|typedef|return|friend|extern|static|thread_local"
+    r"|public|private|protected|case|default|goto|else|delete)\b)(?:inline[ \t]+)?"
+    r"[A-Za-z_][\w:]*(?:<[^;(){}]*>)?[ \t*&]+"
     r"\w[\w:]*(?:\[\w*\])*[ \t]*(?:=[^=]|;|\{)", re.MULTILINE)
 
 

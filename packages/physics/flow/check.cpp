@@ -137,7 +137,7 @@ void compare_rock(Comparison& c, const Material& rock) {
 
 }  // namespace
 
-std::string Flow::no_error_estimate(const Scene& scene) {
+std::string Flow::Estimate::missing(const Scene& scene) {
   if (has_unknown_pressure(scene) && !scene.flow) return "is not available where a host program computes the pressure";
   if (!scene.flow) return "";
   const auto& flow = *scene.flow;
@@ -155,7 +155,7 @@ std::string Flow::no_error_estimate(const Scene& scene) {
   return "";
 }
 
-std::vector<estimate::QuantityKind> Flow::quantities() {
+std::vector<estimate::QuantityKind> Flow::Estimate::quantities() {
   return {{"pressure", "Pa", "Pa", "pressure of a well with a given rate, or mean over fractures"},
           {"flow", "m^3/s", "m^2/s",
            "flow of fluid into the domain from a well with a given pressure, or through a boundary with a prescribed "
@@ -167,7 +167,7 @@ std::vector<estimate::QuantityKind> Flow::quantities() {
            .is_norm = true}};
 }
 
-std::string Flow::refuses(const Scene& scene, const estimate::Functional& J) {
+std::string Flow::Estimate::refuses(const Scene& scene, const estimate::Functional& J) {
   const bool of_well = !J.well.empty();
   const auto absent = [&](const char* entry, const char* of) {
     return fmt::format("\"{}\": must be absent: \"{}\" {}", entry, J.what, of);

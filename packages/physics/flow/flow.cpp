@@ -116,8 +116,8 @@ std::vector<transport::FractureFlowParameters::Face> hydraulics(const Setting& s
 /// Quantities that the fluid transports for all physics of a scene.
 std::vector<CarriedQuantity> carried_in(const Scene& scene) {
   std::vector<CarriedQuantity> all;
-  for_each_physics([&](auto physics) {
-    for (auto& one : physics.carried(scene)) all.push_back(one);
+  for_each_physics([&]<HasTransport P>(P) {
+    for (auto& one : P::Transport::carried(scene)) all.push_back(one);
   });
   return all;
 }
@@ -217,7 +217,7 @@ bool has_unknown_pressure(const Scene& scene) { return scene.flow || (scene.host
 
 bool Flow::needs_facets(const Scene& scene) { return has_unknown_pressure(scene); }
 
-bool Flow::has_rates(const Scene& scene) { return has_fluid(scene); }
+bool Flow::Rates::exist(const Scene& scene) { return has_fluid(scene); }
 
 bool Flow::has_initial_state(const Scene& scene) {
   if (!is_in(scene) || Mechanics::is_in(scene)) return true;
@@ -311,7 +311,7 @@ FluidFlux fluid_flux(const Setting& setting) {
   return all;
 }
 
-std::unique_ptr<estimate::MeshError> Flow::mesh_error(const Setting& setting, assembly::System& system) {
+std::unique_ptr<estimate::MeshError> Flow::Estimate::mesh_error(const Setting& setting, assembly::System& system) {
   if (!is_in(setting.scene)) return nullptr;
   auto [flux, conduits, wells] = fluid_flux(setting);
   const Real of_fluid = flux.rock.fluid.compressibility;
@@ -373,8 +373,8 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
   return all;
 }
 
-std::vector<std::string> Flow::warnings_of_state(const Setting& setting, const std::vector<Real>&,
-                                                 const std::vector<assembly::OutputField>& outputs) {
+std::vector<std::string> Flow::Warnings::of_state(const Setting& setting, const std::vector<Real>&,
+                                                  const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
   std::array<Real, 2> here{};  // largest value of -p, and of |p|

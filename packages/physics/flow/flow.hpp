@@ -109,18 +109,27 @@ struct Flow : Physics<Flow> {
   static bool is_in(const Scene& scene);
   static std::vector<std::string> fixed_entries() { return {"initial pressure"}; }
   static bool needs_facets(const Scene& scene);
-  static bool has_rates(const Scene& scene);
   static bool has_initial_state(const Scene& scene);
-  static std::vector<std::string> sections_with_rates() { return {"Flow"}; }
-  static std::string no_error_estimate(const Scene& scene);
-  static std::vector<estimate::QuantityKind> quantities();
-  static std::string refuses(const Scene& scene, const estimate::Functional& J);
-  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
-  static std::vector<std::string> warnings_of_state(const Setting& setting, const std::vector<Real>& times,
-                                                    const std::vector<assembly::OutputField>& outputs);
+
+  struct Rates {
+    static bool exist(const Scene& scene);
+    static std::vector<std::string> sections() { return {"Flow"}; }
+    static std::string implicit_euler(const Scene&) { return ""; }
+  };
+  struct Estimate {
+    static std::string missing(const Scene& scene);
+    static std::vector<estimate::QuantityKind> quantities();
+    static std::string refuses(const Scene& scene, const estimate::Functional& J);
+    static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
+  };
+  struct Warnings {
+    static std::vector<std::string> of_input(const Setting&, const std::vector<Real>&) { return {}; }
+    static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,
+                                             const std::vector<assembly::OutputField>& outputs);
+  };
 };
 
 /// Returns whether the scene has a fluid: Flow, or the fluid of a host.

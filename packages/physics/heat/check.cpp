@@ -138,7 +138,7 @@ void compare_conditions(Comparison& c) {
 
 }  // namespace
 
-std::string Heat::no_error_estimate(const Scene& scene) {
+std::string Heat::Estimate::missing(const Scene& scene) {
   if (!scene.heat) return "";
   const auto& heat = *scene.heat;
   if (heat.scheme != "auto" && heat.scheme != "rt0")
@@ -157,12 +157,12 @@ std::string Heat::no_error_estimate(const Scene& scene) {
   return "";
 }
 
-std::vector<estimate::QuantityKind> Heat::quantities() {
+std::vector<estimate::QuantityKind> Heat::Estimate::quantities() {
   return {{"temperature", "K", "K", "temperature of the fluid of a well, or mean over fractures"},
           {"heat flow", "W", "W/m", "heat flow into the domain from a well or through a boundary"}};
 }
 
-std::string Heat::refuses(const Scene& scene, const estimate::Functional& J) {
+std::string Heat::Estimate::refuses(const Scene& scene, const estimate::Functional& J) {
   const bool of_well = !J.well.empty(), is_flow = J.what == "heat flow";
   const auto absent = [&](const char* entry, const char* of) {
     return fmt::format("\"{}\": must be absent: \"{}\" {}", entry, J.what, of);

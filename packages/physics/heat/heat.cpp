@@ -279,7 +279,7 @@ bool Heat::is_in(const Scene& scene) { return scene.heat.has_value(); }
 
 bool Heat::has_initial_state(const Scene& scene) { return !is_in(scene) || scene.heat->initial_temperature; }
 
-std::unique_ptr<estimate::MeshError> Heat::mesh_error(const Setting& setting, assembly::System& system) {
+std::unique_ptr<estimate::MeshError> Heat::Estimate::mesh_error(const Setting& setting, assembly::System& system) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return nullptr;
   transport::HybridDiffusionParameters rock;
@@ -318,7 +318,7 @@ std::unique_ptr<estimate::MeshError> Heat::mesh_error(const Setting& setting, as
   return transport::make_balance_error(system, std::move(parameters));
 }
 
-std::vector<CarriedQuantity> Heat::carried(const Scene& scene) {
+std::vector<CarriedQuantity> Heat::Transport::carried(const Scene& scene) {
   if (!scene.heat || !scene.heat->fluid_capacity) return {};
   CarriedQuantity energy{{.field = "temperature",
                           .capacity = *scene.heat->fluid_capacity,
@@ -345,11 +345,11 @@ std::vector<CarriedQuantity> Heat::carried(const Scene& scene) {
   return {energy};
 }
 
-std::string Heat::takes_friction_power(const Scene& scene) {
+std::string Heat::Transport::friction_power(const Scene& scene) {
   return scene.heat && scene.heat->of_friction ? "face temperature" : "";
 }
 
-std::string Heat::needs_implicit_euler(const Scene& scene) {
+std::string Heat::Rates::implicit_euler(const Scene& scene) {
   return scene.heat && scene.heat->advection == "second order" ? "Heat > \"advection\" = \"second order\"" : "";
 }
 
@@ -430,7 +430,7 @@ std::vector<std::string> Heat::warnings(const Setting& setting) {
 }
 
 /// Warns about temperatures below those of rock and water. The value 0 is accepted: it may denote a difference.
-std::vector<std::string> Heat::plausibility(const Setting& setting, const std::vector<Real>&) {
+std::vector<std::string> Heat::Warnings::of_input(const Setting& setting, const std::vector<Real>&) {
   constexpr Real coldest = 230;
   const auto& scene = setting.scene;
   std::vector<std::string> all;
@@ -457,8 +457,8 @@ bool leaves_water(const mesh::Mesh& mesh, const std::vector<assembly::OutputFiel
 
 }  // namespace
 
-std::vector<std::string> Heat::warnings_of_state(const Setting& setting, const std::vector<Real>& times,
-                                                 const std::vector<assembly::OutputField>& outputs) {
+std::vector<std::string> Heat::Warnings::of_state(const Setting& setting, const std::vector<Real>& times,
+                                                  const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;
   std::vector<std::string> all;
   if (!is_in(scene)) return all;
@@ -473,7 +473,7 @@ std::vector<std::string> Heat::warnings_of_state(const Setting& setting, const s
   return all;
 }
 
-std::vector<std::string> Heat::refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
+std::vector<std::string> Heat::Change::refuses_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
   std::vector<std::string> lines;
   if (!is_in(after) || !Mechanics::is_in(before) || !Mechanics::is_in(after)) return lines;
   for (const auto& [name, filled] : changed_rock(mesh, before, after))

@@ -75,25 +75,37 @@ struct Heat : Physics<Heat> {
 
   static bool is_in(const Scene& scene);
   static std::vector<std::string> fixed_entries() { return {"initial temperature", "thermal expansion"}; }
-  static std::vector<std::string> refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
   static bool needs_facets(const Scene& scene) { return is_in(scene); }
-  static bool has_rates(const Scene& scene) { return is_in(scene); }
   static bool has_initial_state(const Scene& scene);
-  static std::vector<std::string> sections_with_rates() { return {"Heat"}; }
-  static std::string no_error_estimate(const Scene& scene);
-  static std::vector<estimate::QuantityKind> quantities();
-  static std::string refuses(const Scene& scene, const estimate::Functional& J);
-  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
-  static std::vector<CarriedQuantity> carried(const Scene& scene);
-  static std::string takes_friction_power(const Scene& scene);
-  /// Name of the entry that is incompatible with BDF2; empty: none.
-  static std::string needs_implicit_euler(const Scene& scene);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
-  static std::vector<std::string> plausibility(const Setting& setting, const std::vector<Real>& times);
-  static std::vector<std::string> warnings_of_state(const Setting& setting, const std::vector<Real>& times,
-                                                    const std::vector<assembly::OutputField>& outputs);
+
+  struct Rates {
+    static bool exist(const Scene& scene) { return is_in(scene); }
+    static std::vector<std::string> sections() { return {"Heat"}; }
+    static std::string implicit_euler(const Scene& scene);
+  };
+  struct Transport {
+    static std::vector<CarriedQuantity> carried(const Scene& scene);
+    static std::string friction_power(const Scene& scene);
+  };
+  struct Estimate {
+    static std::string missing(const Scene& scene);
+    static std::vector<estimate::QuantityKind> quantities();
+    static std::string refuses(const Scene& scene, const estimate::Functional& J);
+    static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
+  };
+  struct Change {
+    static std::vector<std::string> refuses(const Scene&, const Scene&) { return {}; }
+    static std::vector<std::string> refuses_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
+    static void prepare(const mesh::Mesh&, const Scene&, Scene&) {}
+  };
+  struct Warnings {
+    static std::vector<std::string> of_input(const Setting& setting, const std::vector<Real>& times);
+    static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,
+                                             const std::vector<assembly::OutputField>& outputs);
+  };
 };
 
 }  // namespace sprekk::physics

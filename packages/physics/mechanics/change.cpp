@@ -70,14 +70,15 @@ std::vector<std::string> Mechanics::fixed_entries() {
   return {"initial stress", "lithostatic stress", "in-situ stress", "plastic jump"};
 }
 
-void Mechanics::prepare_change(const mesh::Mesh& mesh, const Scene& before, Scene& after) {
+void Mechanics::Change::prepare(const mesh::Mesh& mesh, const Scene& before, Scene& after) {
   after.keeps_stress =
       before.keeps_stress || (is_in(before) && is_in(after) &&
                               (!changed_rock(mesh, before, after).empty() || springs_of(before) != springs_of(after)));
 }
 
 /// Only the stress of nodes can be transferred, not that of face bubbles and tip functions.
-std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after) {
+std::vector<std::string> Mechanics::Change::refuses_in(const mesh::Mesh& mesh, const Scene& before,
+                                                       const Scene& after) {
   if (!is_in(before) || !is_in(after)) return {};
   const auto changed = changed_rock(mesh, before, after);
   if (changed.empty()) return {};
@@ -111,7 +112,7 @@ std::vector<std::string> Mechanics::refuses_change_in(const mesh::Mesh& mesh, co
   return lines;
 }
 
-std::vector<std::string> Mechanics::refuses_change(const Scene& before, const Scene& after) {
+std::vector<std::string> Mechanics::Change::refuses(const Scene& before, const Scene& after) {
   std::vector<std::string> lines;
   for (const auto& [name, fracture] : after.fractures) {
     const auto old = before.fractures.find(name);

@@ -94,8 +94,8 @@ FluidPressure fluid_pressure(const Scene& scene, const std::vector<std::string>&
 /// Field that receives the power of friction; empty: none.
 std::string power_to(const Scene& scene) {
   std::string field;
-  for_each_physics([&](auto physics) {
-    if (auto one = physics.takes_friction_power(scene); !one.empty()) field = std::move(one);
+  for_each_physics([&]<HasTransport P>(P) {
+    if (auto one = P::Transport::friction_power(scene); !one.empty()) field = std::move(one);
   });
   return field;
 }
@@ -294,8 +294,8 @@ std::vector<std::string> Mechanics::warnings(const Setting& setting) {
                   setting.scene.origin)};
 }
 
-std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting, const std::vector<Real>&,
-                                                      const std::vector<assembly::OutputField>& outputs) {
+std::vector<std::string> Mechanics::Warnings::of_state(const Setting& setting, const std::vector<Real>&,
+                                                       const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
   std::vector<int> ran(mesh.fracture_names.size());
@@ -314,7 +314,7 @@ std::vector<std::string> Mechanics::warnings_of_state(const Setting& setting, co
   return warnings;
 }
 
-std::string Mechanics::no_error_estimate(const Scene& scene) {
+std::string Mechanics::Estimate::missing(const Scene& scene) {
   if (!is_in(scene)) return "";
   const auto& conditions = scene.boundary_conditions;
   if (std::any_of(conditions.begin(), conditions.end(),
@@ -324,7 +324,7 @@ std::string Mechanics::no_error_estimate(const Scene& scene) {
   return has_solid_pressure(scene) ? "is not available in nearly incompressible rock" : "";
 }
 
-std::vector<estimate::QuantityKind> Mechanics::quantities() {
+std::vector<estimate::QuantityKind> Mechanics::Estimate::quantities() {
   return {{"slip", "m", "m", "mean plastic slip over the area of fractures"},
           {"opening", "m", "m", "mean normal jump over the area of fractures"},
           {"normal force", "N", "N/m", "integral of compression over fractures"},
@@ -341,11 +341,11 @@ std::vector<estimate::QuantityKind> Mechanics::quantities() {
            .is_norm = true}};
 }
 
-std::unique_ptr<estimate::MeshError> Mechanics::mesh_error(const Setting& setting, assembly::System& system) {
+std::unique_ptr<estimate::MeshError> Mechanics::Estimate::mesh_error(const Setting& setting, assembly::System& system) {
   return is_in(setting.scene) ? make_mechanics_error(setting, system) : nullptr;
 }
 
-std::string Mechanics::refuses(const Scene& scene, const estimate::Functional& J) {
+std::string Mechanics::Estimate::refuses(const Scene& scene, const estimate::Functional& J) {
   if (!J.well.empty()) return fmt::format("\"well\": must be absent: \"{}\" takes none", J.what);
   const bool of_boundary = J.what == "reaction", of_all = of_boundary || J.what == "stress";
   if (of_all && !J.fractures.empty()) return fmt::format("\"fractures\": must be absent: \"{}\" takes none", J.what);
@@ -359,7 +359,7 @@ std::string Mechanics::refuses(const Scene& scene, const estimate::Functional& J
                                            : fmt::format("\"boundary\": must be absent: \"{}\" takes none", J.what);
 }
 
-std::vector<std::string> Mechanics::doubts(const Setting& setting, bool oscillates) {
+std::vector<std::string> Mechanics::Solvability::doubts(const Setting& setting, bool oscillates) {
   if (!is_in(setting.scene)) return {};
   const auto& [scene, mesh, start] = setting;
   std::vector<std::string> all = {friction_doubt(scene, mesh), weakening_doubt(scene, mesh), bond_doubt(scene, mesh)};

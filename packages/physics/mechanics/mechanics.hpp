@@ -108,22 +108,31 @@ struct Mechanics : Physics<Mechanics> {
 
   static bool is_in(const Scene& scene);
   static bool needs_facets(const Scene& scene);
-  static std::string no_error_estimate(const Scene& scene);
-  static std::vector<estimate::QuantityKind> quantities();
-  static std::string refuses(const Scene& scene, const estimate::Functional& J);
-  static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
   static std::vector<std::string> fixed_entries();
-  static std::vector<std::string> refuses_change(const Scene& before, const Scene& after);
-  static std::vector<std::string> refuses_change_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
-  static void prepare_change(const mesh::Mesh& mesh, const Scene& before, Scene& after);
   static void compare(Comparison& comparison);
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
-  static std::vector<std::string> plausibility(const Setting& setting, const std::vector<Real>& times);
-  static std::vector<std::string> warnings_of_state(const Setting& setting, const std::vector<Real>& times,
-                                                    const std::vector<assembly::OutputField>& outputs);
-  static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
+
+  struct Estimate {
+    static std::string missing(const Scene& scene);
+    static std::vector<estimate::QuantityKind> quantities();
+    static std::string refuses(const Scene& scene, const estimate::Functional& J);
+    static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
+  };
+  struct Change {
+    static std::vector<std::string> refuses(const Scene& before, const Scene& after);
+    static std::vector<std::string> refuses_in(const mesh::Mesh& mesh, const Scene& before, const Scene& after);
+    static void prepare(const mesh::Mesh& whole, const Scene& before, Scene& after);
+  };
+  struct Warnings {
+    static std::vector<std::string> of_input(const Setting& setting, const std::vector<Real>& times);
+    static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,
+                                             const std::vector<assembly::OutputField>& outputs);
+  };
+  struct Solvability {
+    static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
+  };
 };
 
 /// Elasticity of local cells.

@@ -403,7 +403,7 @@ std::string strength_doubt(const Setting& setting) {
 
 }  // namespace
 
-std::vector<std::string> Mechanics::plausibility(const Setting& setting, const std::vector<Real>& times) {
+std::vector<std::string> Mechanics::Warnings::of_input(const Setting& setting, const std::vector<Real>& times) {
   if (!is_in(setting.scene)) return {};
   const auto some = some_of(times);
   std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some),
