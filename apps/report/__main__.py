@@ -64,7 +64,7 @@ def report(options):
         content,
         entries,
         checks.of_run(directory, content, entries),
-        figures.of_run(content),
+        figures.of_run(content, entries.reference),
         drawn,
         left_out,
         view.of_run(directory) if viewer else None,

@@ -2,7 +2,7 @@
 from collections import namedtuple
 
 import numpy as np
-from numbers_in_words import RATES, number, quantity, unit_of
+from numbers_in_words import RATES, in_unit, number, quantity, unit_of
 
 Table = namedtuple("Table", "title columns rows note")
 MOST_ROWS = 30
@@ -10,8 +10,8 @@ NOISE = 1e-9  # round-off relative to the largest value of a column
 
 OF_FRACTURES = [
     ("area", "length or area", "m"),
-    ("fraction_slip", "slipping part", ""),
-    ("fraction_open", "open part", ""),
+    ("fraction_slip", "slipping at the end", ""),
+    ("fraction_open", "open at the end", ""),
     ("mean_slip", "mean slip", "m"),
     ("max_slip", "largest slip", "m"),
     ("max_opening", "largest opening", "m"),
@@ -58,6 +58,26 @@ def of_fractures(fractures, dim):
         return
     note = f"{len(names) - len(shown)} others with less slip" if len(names) > len(shown) else ""
     yield Table("Fractures", [title for title, _ in columns], list(zip(*(values for _, values in columns))), note)
+
+
+def of_joints(content, reference):
+    """Yields the table of joint entries that single fractures have of their own, from columns of their file."""
+    own = {one["name"]: one["own_joint"] for one in content.get("single_fractures", []) if "own_joint" in one}
+    shown = list(own)[:MOST_ROWS]
+    entries = sorted({entry for name in shown for entry in own[name]}, key=lambda entry: (entry != "material", entry))
+    rows = [
+        (
+            name,
+            *(
+                in_unit(own[name][entry], reference.entry(("Materials", "NAME"), entry)[0]) if entry in own[name] else "–"
+                for entry in entries
+            ),
+        )
+        for name in shown
+    ]
+    if rows:
+        others = f"; {len(own) - len(shown)} others are not listed" if len(own) > len(shown) else ""
+        yield Table("Joints of single fractures", ["fracture", *entries], rows, f"–: as in the material{others}")
 
 
 def of_boundaries(step):
@@ -108,9 +128,10 @@ def of_costs(content):
     yield Table("Time", ["part", "calls", "seconds", "CPU seconds"], rows, "parts may include others")
 
 
-def of_run(content):
-    """Returns the tables of results and the tables of costs."""
+def of_run(content, reference):
+    """Returns the tables of results and the tables of costs. `reference`: units of entries, scene.Reference."""
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
     fractures = singles(content, last) or last.get("fractures", {})
-    return [*of_fractures(fractures, dim), *of_wells(last, dim), *of_boundaries(last)], list(of_costs(content))
+    tables = [*of_fractures(fractures, dim), *of_joints(content, reference), *of_wells(last, dim), *of_boundaries(last)]
+    return tables, list(of_costs(content))

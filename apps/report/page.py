@@ -38,6 +38,17 @@ def table(content):
     return f"<h3>{text(content.title)}</h3><div class='wide'><table>{head}<tbody>{rows}</tbody></table></div>{note}"
 
 
+def count(number, word):
+    return f"{number} {word}{'' if number == 1 else 's'}"
+
+
+def number_of_fractures(results, scene):
+    """Returns the numbers of single fractures and of their sets, which are the subsections of `Fractures`."""
+    sets = sum(isinstance(value, dict) for value in scene.entries.get("Fractures", {}).values())
+    singles = len(results.get("single_fractures", [])) or sets
+    return count(singles, "fracture") + (f" in {count(sets, 'set')}" if singles != sets else "") if sets else "no fractures"
+
+
 def summary(results, scene):
     mesh, steps = results.get("mesh", {}), results["steps"]
     body = {2: "A plane section of rock", 3: "A body of rock"}.get(mesh.get("dimension"), "Rock")
@@ -46,15 +57,9 @@ def summary(results, scene):
         for section, words in (("Flow", "with a fluid that flows through it"), ("Heat", "with heat"))
         if section in scene.entries
     ]
-    fractures = scene.entries.get("Fractures", {})
-    many = (
-        f"{len(fractures)} fracture{'s' if len(fractures) != 1 else ''} or sets of them"
-        if fractures
-        else "no fractures"
-    )
     return (
-        f"{body}{' ' + ' and '.join(physics) if physics else ''}, of {mesh.get('cells', 0)} cells, has {many} "
-        f"({mesh.get('fracture_faces', 0)} faces). {len(steps)} step{'s' if len(steps) != 1 else ''} up to "
+        f"{body}{' ' + ' and '.join(physics) if physics else ''}, of {mesh.get('cells', 0)} cells, has {number_of_fractures(results, scene)} "
+        f"({mesh.get('fracture_faces', 0)} faces). {count(len(steps), 'step')} up to "
         f"t = {quantity(steps[-1]['time'], 's')}."
     )
 

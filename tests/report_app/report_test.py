@@ -126,6 +126,10 @@ class Checks(ReportTest):
         stored = sum(wells["inflows"].values()) + wells["wells"]["injector"]["rate"]
         self.assertIn(f"{numbers_in_words.number(stored)} m²/s, is stored", found["balance of fluid"].words)
 
+    def test_negative_storage_is_a_release(self):
+        (check,) = checks.fluid([{"inflows": {"west": 1.0, "east": -3.0}}], 3)
+        self.assertTrue(check.words.endswith("the sum, −2 m³/s, is released from storage"), check.words)
+
     def test_rates_per_depth(self):
         """Rates of a 2D scene are in m^2/s and W/m in checks, tables and scene; in 3D in m^3/s and W."""
         self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
@@ -189,6 +193,11 @@ class Checks(ReportTest):
         self.assertEqual(self.verdicts()[name].verdict, "passed", self.verdicts()[name])
         a1 = self.results()["single_fractures"][0]["own_joint"]
         self.assertEqual(a1, {"material": "mapped joint", "friction coefficient": "0.55", "initial aperture": "0.0002"})
+
+        html = Path(self.write()).read_text()
+        self.assertIn("has 12 fractures in 1 set (", html)
+        table = html.split("Joints of single fractures")[1].split("</table>")[0]
+        self.assertIn("<td>A1</td><td>mapped joint</td><td>0.55</td><td>200 µm</td>", table)
 
         def spoil(content):
             for one in content["single_fractures"]:
@@ -284,11 +293,11 @@ class Words(ReportTest):
             "single_fractures": [{"name": "a", "set": "set", "area": 1.0}, {"name": "b", "set": "set", "area": 2.0}],
             "steps": [step],
         }
-        (table,), _ = figures.of_run(content)
+        (table,), _ = figures.of_run(content, None)
         self.assertEqual(table.columns, ["fracture", "length (m)", "largest slip (mm)", "moment per depth (N)"])
         self.assertEqual(table.rows, [("b", "2", "2", "5 × 10⁹"), ("a", "1", "1", "0")])
         del content["single_fractures"]
-        (table,), _ = figures.of_run(content)
+        (table,), _ = figures.of_run(content, None)
         self.assertEqual([row[0] for row in table.rows], ["set"])
 
     def test_rounding_is_zero_in_tables(self):
