@@ -153,10 +153,10 @@ def legend_of_traces(ax, traces):
 
 
 def legend_of_lines(ax, row, n_traces):
-    """Draws the legend of the two quantities of a row; with colours if there is one trace."""
+    """Draws the legend of the two quantities of a row beside its axes; with colours if there is one trace."""
     one = n_traces == 1
     handles = [plt.Line2D([], [], color=LINES[i] if one else INK, linestyle="--" if i else "-", label=name) for i, name in enumerate(row)]
-    ax.legend(handles=handles, loc="best" if n_traces <= MOST_NAMES else "upper right", fontsize=7, handlelength=1.6, frameon=True, framealpha=0.7, edgecolor="none")
+    ax.legend(handles=handles, loc="upper left", bbox_to_anchor=(1, 1), fontsize=7, handlelength=1.6)
 
 
 MOST_COLUMNS = 4
@@ -195,8 +195,8 @@ def along(surface, names, title, length, stress, singles=()):
         if len(traces[number]) > 1:
             legend_of_traces(column[0], traces[number])
         for ax, row in zip(column, ROWS.values()):
-            if k % columns == 0 and len(row) > 1:
-                legend_of_lines(ax, row, len(traces[number]))
+            if k % columns == columns - 1 and len(row) > 1:
+                legend_of_lines(ax, row, max(map(len, traces.values())))
     patches = [plt.Rectangle((0, 0), 1, 1, color=STATE_COLOURS(i)) for i in range(3)]
     figure.legend(patches, STATES, loc="upper right", bbox_to_anchor=(1, 1), ncol=3, columnspacing=1, handlelength=1.2, borderaxespad=0)
     return figure

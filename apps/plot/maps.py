@@ -101,13 +101,15 @@ def place_of_name(name, places, extent, taken):
     return None
 
 
-def write_names(ax, surface, names, singles):
-    """At traces that fractures.png shows in colour, the largest jump first; names that would overlap are left out."""
+def write_names(ax, surface, names, singles, length):
+    """At traces with slip that fractures.png shows in colour, the largest jump first, without names that would overlap.
+    `length` is the reference value of round-off."""
+    slips = without_noise(surface.cell_data["slip"], length) > 0
     jump = np.linalg.norm(surface.cell_data["jump local"][:, 1:], axis=1)
     ends = np.array([surface.points[face[:2], :2].mean(axis=0) for face in surface.polygons])
     traces = [trace for number in sorted(set(surface.cell_data["fracture"].astype(int)))
               for trace in traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}", singles)
-              if trace.colour != FAINT]
+              if trace.colour != FAINT and np.any(slips[trace.faces])]
     taken = []
     for trace in sorted(traces, key=lambda trace: -np.max(jump[trace.faces])):
         places = ends[trace.faces][np.unique(np.linspace(0, len(trace.faces) - 1, 9).round().astype(int))]
@@ -128,12 +130,13 @@ def of_step(rock, joints, names, title, singles=()):
     figure = plt.figure(figsize=(9, 7.6 * height + 0.8))
     figure.suptitle(title, fontsize=10)
     bar = {} if plane else {"location": "bottom", "shrink": 0.7, "pad": 0.1}
-    for k, (values, norm, colours, label) in zip((1, 3, 4), panels(surface.cell_data, *scales(rock, surface.cell_data))):
+    sizes = scales(rock, surface.cell_data)
+    for k, (values, norm, colours, label) in zip((1, 3, 4), panels(surface.cell_data, *sizes)):
         ax = figure.add_subplot(2, 2, k, projection=None if plane else "3d")
         if plane:
             draw_lines(ax, surface, outline, values, norm, colours)
             if k == 3:
-                write_names(ax, surface, names, singles)
+                write_names(ax, surface, names, singles, sizes[0])
         else:
             draw_faces(ax, surface, colours(norm(np.ma.masked_invalid(values))))
         colour_bar(figure, ax, norm, colours, label, **bar)

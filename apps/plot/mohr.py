@@ -9,7 +9,8 @@ from bulk import tensors
 from fractures import effective, scales
 from style import FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, STYLES, foremost, look, plt, without_noise
 
-MOST_ENVELOPES = 4
+MOST_ENVELOPES = 2 * len(STYLES)
+MOST_NAMES = 3  # of joints with the same strength
 MOST_PATHS = 3  # of single fractures
 
 
@@ -73,19 +74,32 @@ def draw_circles(ax, principal, traction):
 
 
 def draw_envelopes(ax, joints, traction, largest):
-    """Draws the strengths of joints {name: entries} up to the largest compression. Names joints with other laws."""
-    normal, unknown, drawn = np.linspace(0, largest, 200), [], 0
+    """Draws one line for each distinct strength of the joints {name: entries} up to the largest compression.
+
+    Names joints with other laws."""
+    normal, names, unknown = np.linspace(0, largest, 200), {}, []
     for name, joint in joints.items():
         bound = strength(joint, normal)
-        if bound is None or drawn == MOST_ENVELOPES:
-            unknown.append(str(name))
-        else:
-            ax.plot(
-                traction(normal), traction(bound), color=LINES[3], linestyle=STYLES[drawn], label=f"strength of {name}"
-            )
-            drawn += 1
+        (unknown if bound is None else names.setdefault(tuple(bound), [])).append(name)
+    for k, bound in enumerate(names):
+        if k == MOST_ENVELOPES:
+            unknown += [name for some in list(names.values())[k:] for name in some]
+            break
+        ax.plot(
+            traction(normal),
+            traction(bound),
+            color=LINES[(3, 5)[k // len(STYLES)]],
+            linestyle=STYLES[k % len(STYLES)],
+            label=f"strength of {listed(names[bound])}",
+        )
     if unknown:
-        ax.plot([], [], linestyle="", label=f"strength not drawn: {', '.join(unknown)}")
+        ax.plot([], [], linestyle="", label=f"strength not drawn: {listed(unknown)}")
+
+
+def listed(names):
+    """Returns the first names and the number of the others."""
+    others = len(names) - MOST_NAMES
+    return ", ".join(map(str, names[:MOST_NAMES])) + (f" and {others} more" if others > 0 else "")
 
 
 def stress_paths(content, time):
@@ -104,13 +118,13 @@ def stress_paths(content, time):
     return {name: (-means[:, k, 0], np.linalg.norm(means[:, k, 1:], axis=1)) for k, name in enumerate(names)}
 
 
-def joints_of(scene, content, names):
-    """Returns {name: entries} of the joints of fractures, and of the given single fractures with own entries."""
+def joints_of(scene, content):
+    """Returns {name: entries} of the joints of fractures, and of the single fractures with own entries."""
     materials = scene.get("Materials", {})
     used = [f.get("material") for f in scene.get("Fractures", {}).values() if isinstance(f, dict)]
     joints = {name: materials.get(name, {}) for name in used}
     for one in content.get("single_fractures", []):
-        if one["name"] in names and one.get("own_joint"):
+        if one.get("own_joint"):
             joints[one["name"]] = {**materials.get(one["own_joint"]["material"], {}), **one["own_joint"]}
     return joints
 
@@ -150,7 +164,7 @@ def of_step(rock, joints, scene, title, content, time):
         ax.plot(*(traction(values[-1:]) for values in path), "s", markersize=4, color=line["color"])
         highest.append(np.max(path[1]))
     largest = max([np.max(normal, initial=0), np.max(principal, initial=0), *(np.max(path[0]) for path in paths.values())])
-    draw_envelopes(ax, joints_of(scene, content, paths), traction, 1.05 * largest)
+    draw_envelopes(ax, joints_of(scene, content), traction, 1.05 * largest)
     ax.axvline(0, color=FAINT, linewidth=0.6, zorder=1)
     top = traction(max(highest))
     ax.set_ylim(-0.02 * (top or 1), 1.25 * (top or 1))

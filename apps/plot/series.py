@@ -3,7 +3,7 @@ import re
 
 import numpy as np
 from read import PlotError, csv_rows
-from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit
+from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit, when
 
 MOST_LINES = 6  # with colours in one panel
 
@@ -124,10 +124,11 @@ def of_probe(path):
     clock_name, times = columns[0][1:]
     if not len(times):
         return None
+    wanted = None if clock_name == "s" else (1, clock_name)
     if len(columns) > 1 and columns[1][0] == "distance":
         last = times == times[-1]
         content = [panel(name, symbol, {name: values[last]}) for name, symbol, values in columns[2:] if name not in "xyz"]
-        figure = figure_of(f"{path.stem}, t = {times[-1]:g} {clock_name}", columns[1][2][last], "", content)
+        figure = figure_of(f"{path.stem}, {when(times[-1], wanted)}", columns[1][2][last], "", content)
         figure.axes[-1].set_xlabel("distance (m)")
         return figure
     groups = {}
@@ -136,4 +137,4 @@ def of_probe(path):
     content = [
         panel(next(iter(curves)) if len(curves) == 1 else "values", symbol, curves) for symbol, curves in groups.items()
     ]
-    return figure_of(path.stem, times, clock_name, content)
+    return figure_of(path.stem, *clock(times, wanted), content)

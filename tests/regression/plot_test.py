@@ -301,6 +301,15 @@ class Pictures(PlotTest):
                          [("A", "A", [4, 5]), ("set 7", "7", [2, 3]), ("C 1", "C 1", [6, 7]), ("D", "D", [0, 1])])
         axes = fractures.along(surface, ["set"], "run", 1e-3, 1e6, singles).axes
         self.assertEqual([text.get_text() for text in axes[-1].get_yticklabels()], ["A", "7", "C 1", "D"])
+        figure = axes[0].figure
+        figure.canvas.draw()
+        for ax in axes[0], axes[2]:  # legends of lines do not cover curves
+            self.assertGreaterEqual(ax.get_legend().get_window_extent().x0, ax.get_window_extent().x1)
+        surface.cell_data["slip"][2:4] = 0
+        ax = figure.add_subplot()
+        maps.write_names(ax, surface, ["set"], singles, 1e-3)
+        self.assertNotIn("set 7", [text.get_text() for text in ax.texts])
+        self.assertIn("A", [text.get_text() for text in ax.texts])
 
     def test_many_fractures_fit_a_page(self):
         """Many fractures are in the order of their numbers, four in a row."""
@@ -459,8 +468,18 @@ class Pictures(PlotTest):
             size = lines[f"path of {one['name']}"][0] @ means[:, 0] / (means[:, 0] @ means[:, 0])
             self.assertTrue(np.allclose(lines[f"path of {one['name']}"], [size * means[:, 0], -size * abs(means[:, 1])]))
         own = {"single_fractures": [{"name": "a", "own_joint": {"material": "joint", "friction coefficient": "0.1"}}, {"name": "b"}]}
-        joints = mohr.joints_of({"Materials": {"joint": {"friction": "Coulomb"}}}, own, ["a", "b"])
+        joints = mohr.joints_of({"Materials": {"joint": {"friction": "Coulomb"}}}, own)
         self.assertEqual(joints, {"a": {"friction": "Coulomb", **own["single_fractures"][0]["own_joint"]}})
+
+    def test_strengths_are_drawn_once(self):
+        """Joints with the same strength share a line. The legend names the first three; others without a line are named."""
+        joints = {name: {"friction": "Coulomb", "friction coefficient": f"{0.1 * k:g}"} for k, name in enumerate("abcdefghij", 1)}
+        joints |= {name: joints["a"] for name in "klm"} | {"n": {"friction": "slip weakening"}}
+        ax = style.plt.figure().add_subplot()
+        mohr.draw_envelopes(ax, joints, style.Quantity("", "Pa", 1e6), 1e6)
+        labels = [line.get_label() for line in ax.lines]
+        self.assertEqual(labels, ["strength of a, k, l and 1 more", *(f"strength of {name}" for name in "bcdefgh"), "strength not drawn: n, i, j"])
+        self.assertEqual(len({(line.get_color(), str(line._dash_pattern)) for line in ax.lines[:-1]}), 8)
 
     def test_thin_bodies_are_drawn_wide(self):
         """Panels of thin bodies are in a column without empty space, those of square bodies in a row."""
@@ -691,8 +710,13 @@ class Numbers(ProgramTest):
         self.assertEqual([ax.get_ylabel() for ax in axes], ["pressure (MPa)", "values (mm)"])
         self.assertEqual(axes[-1].get_xlabel(), "time (d)")
         self.assertEqual([line.get_ydata().tolist() for line in axes[1].lines], [[1, 2], [2, 5]])
-        path.write_text("time [s],distance [m],x [m],y [m],slip [m]\n1,0,0,0,1\n1,1,1,0,2\n2,0,0,0,3\n2,1,1,0,4\n")
+        path.write_text("time [s],slip [m]\n0,0\n36000,1\n")
         (ax,) = series.of_probe(path).axes
+        self.assertEqual([ax.get_xlabel(), *ax.lines[0].get_xdata()], ["time (h)", 0, 10])
+        path.write_text("time [s],distance [m],x [m],y [m],slip [m]\n1,0,0,0,1\n1,1,1,0,2\n7200,0,0,0,3\n7200,1,1,0,4\n")
+        figure = series.of_probe(path)
+        self.assertEqual(figure._suptitle.get_text(), "gauge, t = 2 h")
+        (ax,) = figure.axes
         self.assertEqual([ax.lines[0].get_xdata().tolist(), ax.lines[0].get_ydata().tolist()], [[0, 1], [3, 4]])
         path.write_text("a,b\n")
         self.assertRaises(read.PlotError, series.of_probe, path)
