@@ -2,6 +2,8 @@
 """Results of single fractures of sets: fractures_test.py PROGRAM ROOT MPIEXEC"""
 import csv
 import math
+import subprocess
+import sys
 
 from networks import mesh_of
 from program import ROOT, ProgramTest, main
@@ -54,6 +56,11 @@ class Fractures(ProgramTest):
             table = list(csv.DictReader(file))
         self.assertEqual({row["name"] for row in table if float(row["area_slip [m]"]) > 0}, slipping)
         self.assertEqual([float(row["mean_slip [m]"]) for row in table], last["mean_slip"])
+        script = [sys.executable, ROOT / "docs/read_results.py", self.folder / "out"]
+        rows = subprocess.run([*script, "B2"], capture_output=True, text=True).stdout.splitlines()
+        k = [row["name"] for row in table].index("B2")
+        self.assertEqual(float(rows[len(r["steps"])].split()[4].strip("%")), round(100 * last["fraction_slip"][k]))
+        self.assertIn("traces, A1, A2,", subprocess.run([*script, "B9"], capture_output=True, text=True).stderr)
 
     def test_moment_and_totals(self):
         """The moment is G times slip times area. Sets have the sums and means of their fractures."""
