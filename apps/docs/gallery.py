@@ -43,6 +43,7 @@ PICTURES = {
     "new": "maps bulk",
     "new/doublet": "temperature",
     "new/injection": "overview maps",
+    "new/stimulation": "overview maps",
     "new/first_scene": "bulk",
     "performance": "flow bulk",
     "poro": "maps flow bulk",

@@ -6,7 +6,7 @@ import subprocess
 
 from program import ROOT, ProgramTest, main
 
-TOPICS = {"first_scene", "direct_shear", "network", "injection", "doublet", "gallery", "slope", "point_test"}
+TOPICS = {"first_scene", "direct_shear", "network", "injection", "stimulation", "doublet", "gallery", "slope", "point_test"}
 
 
 class New(ProgramTest):
@@ -77,6 +77,11 @@ class New(ProgramTest):
         fault = self.run_topic("injection", ranks=2)["fractures"]["fault"]
         self.assertTrue(0 < fault["fraction_open"] < 1)
         self.assertGreater(fault["max_slip"], 1e-3)
+
+    def test_stimulation_reaches_other_fractures(self):
+        fractures = self.run_topic("stimulation")["fractures"]
+        self.assertGreater(fractures["injected"]["max_slip"], 1e-4)
+        self.assertGreater(fractures["north-west"]["max_fracture_pressure"], 24.5e6)
 
     def test_doublet_cools(self):
         """From 150 degrees C, with water of 50."""
