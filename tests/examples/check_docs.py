@@ -88,6 +88,7 @@ if [[ ${{words[0]}} == fit ]]; then exec {python} -B {root}/apps/fit --program {
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
 """
 REPEATED = re.compile(r"\./sprekk (run xml/\S+|plot output/\S+ --dpi \d+)")
+PROGRAM = ("./sprekk", "sprekk")
 BUILDS = re.compile(r"\./sprekk (build|test|fuzz)\b")
 PLOT_PYTHON = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else "python3"
 
@@ -121,17 +122,17 @@ def missing_program(command):
     needs = {"plot": "matplotlib, numpy, vtkmodules", "mesh": "gmsh, matplotlib, numpy, shapely",
              "fit": "matplotlib, numpy, scipy"}
     words = command.split()
-    if words[0] == "./sprekk" and words[1] in needs:
+    if words[0] in PROGRAM and words[1] in needs:
         modules = needs[words[1]]
         found = subprocess.run([PLOT_PYTHON, "-c", "import " + modules], stderr=subprocess.DEVNULL).returncode == 0
         return None if found else f"one of {modules} for {PLOT_PYTHON}"
     words = [word for word in shlex.split(command) if "=" not in word]
-    return None if "/" in words[0] or shutil.which(words[0]) else words[0]
+    return None if words[0] in PROGRAM or "/" in words[0] or shutil.which(words[0]) else words[0]
 
 
 def run(command, folder, time_limit=600):
-    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                   "OMP_NUM_THREADS": "1"}
+    environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                   "OMP_NUM_THREADS": "1"}  # on the path, `sprekk` of an installed package is ./sprekk
     return subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=folder, env=environment,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           timeout=time_limit)
