@@ -1063,17 +1063,16 @@ class AccuracyQuantitie(Section):
     quantity: quantity of interest; slip: mean plastic slip over the area of fractures; opening: mean normal jump over
         the area of fractures; normal force: integral of compression over fractures; shear force: integral of the
         magnitude of shear traction over fractures; reaction: force on a boundary with prescribed displacements; stress:
-        square root of the integral of s : C^-1 s, twice the elastic energy; pressure: pressure of a well, or mean over
-        fractures; flow: flow of fluid into the domain from a well or through a boundary; flux: square root of the power
-        dissipated by the flow of fluid; temperature: temperature of the fluid of a well, or mean over fractures; heat
-        flow: heat flow into the domain from a well or through a boundary ("slip" | "opening" | "normal force" | "shear
-        force" | "reaction" | "stress" | "pressure" | "flow" | "flux" | "temperature" | "heat flow"; required)
+        square root of the integral of s : C^-1 s, twice the elastic energy; pressure: pressure of a well with a given
+        rate, or mean over fractures; flow: flow of fluid into the domain from a well with a given pressure, or through
+        a boundary with a prescribed pressure; flux: square root of the power dissipated by the flow of fluid;
+        temperature: temperature of the fluid of a well, or mean over fractures; heat flow: heat flow into the domain
+        from a well or through a boundary ("slip" | "opening" | "normal force" | "shear force" | "reaction" | "stress" |
+        "pressure" | "flow" | "flux" | "temperature" | "heat flow"; required)
     fractures: names of the fractures of the quantity; empty: all fractures (default {})
-    boundary: boundary of a reaction, with prescribed displacements, or of a flow, with a prescribed potential (default
-        "")
-    well: well of a pressure, with a given rate; of a flow, with a given pressure; of a carried quantity, any well
-        (default "")
-    component: direction of the reaction force ("x" | "y" | "z"; default x)
+    boundary: boundary of the quantity; its field must be prescribed there (default "")
+    well: well of the quantity (default "")
+    component: direction of a force ("x" | "y" | "z"; default x)
     relative: tolerance of the error relative to the value at the end of the run (between 1e-08 and 1)
     absolute: tolerance of the absolute error; slip in m, opening in m, normal force in N (2D: N/m), shear force in N
         (2D: N/m), reaction in N (2D: N/m), stress in sqrt(J) (2D: sqrt(J/m)), pressure in Pa, flow in m^3/s (2D:

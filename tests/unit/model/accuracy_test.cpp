@@ -27,8 +27,7 @@ TEST(Accuracy, QuantitiesHaveTitlesAndUnits) {
   auto q = quantity("slip");
   EXPECT_EQ(q.title(), "slip of all fractures");
   EXPECT_EQ(q.unit(2), "m");
-  EXPECT_TRUE(q.is_of_outputs());
-  EXPECT_FALSE(q.of_all());
+  EXPECT_FALSE(q.is_norm());
   q.fractures = {"a", "b"};
   EXPECT_EQ(q.title(), "slip of \"a\", \"b\"");
   q = quantity("reaction");
@@ -41,7 +40,7 @@ TEST(Accuracy, QuantitiesHaveTitlesAndUnits) {
   EXPECT_EQ(q.title(), "flow through \"east\"");
   q.well = "w";
   EXPECT_EQ(q.title(), "flow of \"w\"");
-  EXPECT_TRUE(quantity("stress").of_all());
+  EXPECT_TRUE(quantity("stress").is_norm());
   EXPECT_EQ(quantity("stress").title(), "stress");
 }
 
