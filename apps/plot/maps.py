@@ -101,15 +101,20 @@ def place_of_name(name, places, extent, taken):
     return None
 
 
+FEW = 12
+
+
 def write_names(ax, surface, names, singles, length):
-    """At traces with slip that fractures.png shows in colour, the largest jump first, without names that would overlap.
-    `length` is the reference value of round-off."""
+    """At traces that fractures.png shows in colour, the largest jump first, without names that would overlap. Of more than
+    FEW traces, only those with slip. `length` is the reference value of round-off."""
     slips = without_noise(surface.cell_data["slip"], length) > 0
     jump = np.linalg.norm(surface.cell_data["jump local"][:, 1:], axis=1)
     ends = np.array([surface.points[face[:2], :2].mean(axis=0) for face in surface.polygons])
     traces = [trace for number in sorted(set(surface.cell_data["fracture"].astype(int)))
               for trace in traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}", singles)
-              if trace.colour != FAINT and np.any(slips[trace.faces])]
+              if trace.colour != FAINT]
+    if len(traces) > FEW:
+        traces = [trace for trace in traces if np.any(slips[trace.faces])]
     taken = []
     for trace in sorted(traces, key=lambda trace: -np.max(jump[trace.faces])):
         places = ends[trace.faces][np.unique(np.linspace(0, len(trace.faces) - 1, 9).round().astype(int))]

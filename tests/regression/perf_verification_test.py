@@ -284,7 +284,8 @@ class Scenes(ProgramTest):
         self.assertTrue(np.allclose(measure.face_means(lambda p: p[:, :1] * p[:, 1:2], squares), 1.5))
 
     def test_scenes_of_other_tests_are_those_of_the_measurement(self):
-        for name in ("manufactured_mixed_2d", "manufactured_mixed_3d"):
+        for name in ("manufactured_mixed_2d", "manufactured_mixed_3d", "manufactured_stick_2d", "manufactured_slip_2d",
+                     "manufactured_slip_3d"):
             self.assertEqual(scenes.generated(name, self.folder).read_text(), self.scene(f"verification/{name}.xml").read_text())
 
 
