@@ -34,7 +34,7 @@ struct JointPoint {
   laws::Joint law;
   laws::Augmentation constants;
   std::vector<Real> history = std::vector<Real>(law.n_history(), 0);  // history variables of the law
-  Real stiffness[dim], prescribed[dim], unknowns[2 * dim] = {}, last_plastic[dim - 1] = {};
+  Real stiffness[dim], prescribed[dim] = {}, unknowns[2 * dim] = {}, last_plastic[dim - 1] = {};
   Real start_traction[dim] = {}, rest[dim] = {};  // initial traction and its jump
   mutable long evaluations = 0;
 

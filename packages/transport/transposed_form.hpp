@@ -144,7 +144,7 @@ struct TransposedForm : PlaceSums {
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
       const Real on_mean = add_means(grid.faces[f], in_faces[f]);
       if (dim == 3) all.on_facets[mesh.facets->fracture_face[f]] -= on_mean;
-      for (int k = 0; k < 2 && dim == 2; ++k) {  // see mean_in_face()
+      for (int k = 0; k < 2 && dim == 2; ++k) {  // see Error::mean_in_face() in hybrid_error.cpp
         all.on_facets[grid.flow.facet_of_face(f, k)] -= on_mean / 2;
         in_faces[f][k] += on_mean * grid.two_point_resistance(f) / 2;
       }

@@ -67,8 +67,8 @@ def sizes(texts):
         bool(PHYSICS.search(texts[path])) for path in in_packages if path.split("/")[1] in GENERIC)}
     yield "lines of a source of packages and apps", 500, {
         path: text.count("\n") for path, text in texts.items() if path.split("/")[0] in ("packages", "apps")}
-    yield "calls of refresh_ghosts", 1, {"": sum(
-        len(re.findall(r"(?<!void )(?<!void System::)\brefresh_ghosts\s*\(", code)) for code in in_packages.values())}
+    yield "calls of Ghosts::exchange", 1, {"": sum(
+        len(re.findall(r"\bghosts_\.exchange\s*\(", code)) for code in in_packages.values())}
 
 
 def table(texts):

@@ -11,7 +11,7 @@ GOOD = {
         "struct RatesFunctions {\n  bool (*exist)(const Scene&);\n};\n"
         "template <class Self>\nstruct Physics {\n  static bool is_in() { return 0; }\n};",
     "packages/physics/list.hpp": LIST,
-    "packages/assembly/system.cpp": "void System::refresh_ghosts(bool all) {}\nvoid f() { refresh_ghosts(true); }",
+    "packages/assembly/system.cpp": "void f() { ghosts_.exchange(x, all); }",
 }
 VIRTUAL, STATIC = "virtual void f();\n", "static int f() { return 0; }\n"
 MEMBERS = "std::map<int, int> a_{}, b_ = f();\n"
@@ -30,7 +30,7 @@ BAD = {
     "their includes of folders, except in list.hpp": ("packages/physics/a.hpp", LIST),
     "generic sources that name a physics": ("packages/io/a.cpp", "Real friction;"),
     "lines of a source of packages and apps": ("apps/plot/a.py", 501 * "\n"),
-    "calls of refresh_ghosts": ("packages/assembly/a.cpp", "void f() { system.refresh_ghosts(true); }"),
+    "calls of Ghosts::exchange": ("packages/assembly/a.cpp", "void f() { ghosts_.exchange(x, all); }"),
 }
 
 
