@@ -306,10 +306,13 @@ class Pictures(PlotTest):
         for ax in axes[0], axes[2]:  # legends of lines do not cover curves
             self.assertGreaterEqual(ax.get_legend().get_window_extent().x0, ax.get_window_extent().x1)
         surface.cell_data["slip"][2:4] = 0
-        ax = figure.add_subplot()
-        maps.write_names(ax, surface, ["set"], singles, 1e-3)
-        self.assertNotIn("set 7", [text.get_text() for text in ax.texts])
-        self.assertIn("A", [text.get_text() for text in ax.texts])
+        for few, names_slip_only in ((4, False), (3, True)):
+            with mock.patch.object(maps, "FEW", few):
+                ax = figure.add_subplot()
+                maps.write_names(ax, surface, ["set"], singles, 1e-3)
+            names = [text.get_text() for text in ax.texts]
+            self.assertEqual("set 7" not in names, names_slip_only)
+            self.assertIn("A", names)
 
     def test_many_fractures_fit_a_page(self):
         """Many fractures are in the order of their numbers, four in a row."""
