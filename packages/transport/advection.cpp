@@ -117,10 +117,10 @@ struct InCells {
       for (int k = 0; k < n_passed(); ++k) host(e, k) = all[e * n_passed() + k];
     Kokkos::deep_copy(passed, host);
   }
-  /// Updates the history. `anew` sets the volume of the last step to zero; a run starts with this value.
+  /// Updates the history of volumes. `first`: start of a run, where the volume of the last step is zero.
   template <class Assembler, class Op>
   void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& kept,
-            bool anew) const {
+            bool first) const {
     const auto n_owned = static_cast<int>(kept.extent(0));
     const auto flow = volumes;
     assembler.for_each(
@@ -130,7 +130,7 @@ struct InCells {
           for (int k = 0; k <= Flow::n; ++k) p[k] = x[k];
           flow.flow(e, p, V);
           for (int i = 0; i < Flow::n; ++i) {
-            kept(e, Flow::n + i) = anew ? 0 : V[i] - kept(e, i);
+            kept(e, Flow::n + i) = first ? 0 : V[i] - kept(e, i);
             kept(e, i) = V[i];
           }
         });
@@ -285,9 +285,9 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
   using Assembler = assembly::Assembler<Op>;
   static constexpr int n = Op::n, m = Op::m;
 
-  void keep_passed(const assembly::State& state, bool anew) const {
+  void keep_passed(const assembly::State& state, bool first) const {
     if constexpr (Where::has_passed)
-      if (where_->n_passed() > 0) where_->keep(*assembler_, at(state), state, state.history.back(), anew);
+      if (where_->n_passed() > 0) where_->keep(*assembler_, at(state), state, state.history.back(), first);
   }
 
   bool corrects() const { return stored_.has_value(); }
