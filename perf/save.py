@@ -62,13 +62,20 @@ def run(name, words, folder):
     return process.returncode, [line for line in lines if RESULT.fullmatch(line)]
 
 
+def rounded(text):
+    """A decimal number with six digits; other text unchanged."""
+    return f"{float(text):.6g}" if re.fullmatch(r"-?\d+\.\d+(?:e[-+]\d+)?", text) else text
+
+
 def tables(folder, since):
     """Columns and rows of all tables that the measurement wrote."""
     files = [file for file in sorted(folder.glob("*.csv")) if file.stat().st_mtime >= since]
     rows = []
     for file in files:
         with open(file, newline="") as opened:
-            rows += [{"table": file.stem, **row} if len(files) > 1 else row for row in csv.DictReader(opened)]
+            for row in csv.DictReader(opened):
+                row = {column: rounded(value) for column, value in row.items()}
+                rows.append({"table": file.stem, **row} if len(files) > 1 else row)
     return list(dict.fromkeys(column for row in rows for column in row)), rows
 
 

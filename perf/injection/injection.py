@@ -12,6 +12,7 @@ from perf.contact.scenes import Scene
 
 END = 20 * 3600.0  # s
 MOST = 25          # target: Newton iterations per step
+ASKED = {"failures": 0, "newton_max": MOST}
 CUTS = 0.1         # target: bisections per step of a run
 QUICK = {"failures": 0, "newton_median": 10, "newton_max": 100, "cuts": 4}  # --quick printed 0, 8, 66, 1
 PERMEABILITIES = (1e-20, 1e-17, 1e-15)  # m^2
