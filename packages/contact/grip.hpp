@@ -8,6 +8,9 @@
 
 namespace sprekk::contact {
 
+/// Names of the contact states of a face, in the order of their numbers.
+inline constexpr const char* state_names[] = {"open", "stick", "slip"};
+
 /// Contact constraint of a fracture face at a state.
 struct Grip {
   std::array<mesh::Vector, 3> held{};  ///< rows: constrained directions of the jump, global frame; zero: open

@@ -14,9 +14,14 @@ struct Properties {
   std::vector<T> values;
   std::vector<int> number = {};
 
-  const T& of(int entity, int group) const { return values[number.empty() ? group : number[entity]]; }
+  int number_of(int entity, int group) const { return number.empty() ? group : number[entity]; }
+  const T& of(int entity, int group) const { return values[number_of(entity, group)]; }
   /// Value of a local cell, if groups are regions.
   const T& of_cell(const mesh::Mesh& mesh, LocalIndex cell) const { return of(cell, mesh.cell_region[cell]); }
+  /// Value of a fracture face, if groups are fractures.
+  const T& of_face(const mesh::Mesh& mesh, LocalIndex face) const {
+    return of(face, mesh.fracture_faces[face].fracture);
+  }
 };
 
 /// Collects a property. `uniform(group)`: one value holds in the whole group. `at(group, entity)`: the value at the

@@ -4,7 +4,7 @@
 #include "base/check.hpp"
 #include "laboratory/point.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
-#include "physics/mechanics/joint_slopes.hpp"
+#include "laws/joint_slopes.hpp"
 
 #include <Sacado.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -339,7 +339,7 @@ struct JointPoint {
       for (int i = 0; i < dim - 1; ++i)
         at.plastic_jump[i] = last_plastic[i] + part * (end.plastic_jump[i] - last_plastic[i]);
       at.plastic_slip = std::hypot(at.plastic_jump[0], at.plastic_jump[1]);
-      if (physics::weakening(law, at) * compliance > 1) return true;
+      if (laws::weakening(law, at) * compliance > 1) return true;
     }
     return false;
   }

@@ -3,6 +3,7 @@
 #include "base/memory.hpp"
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
+#include "contact/grip.hpp"
 #include "io/directory_lock.hpp"
 #include "io/file.hpp"
 #include "laboratory/point.hpp"
@@ -35,7 +36,7 @@ class Progress {
  public:
   Progress(base::Log& log, const Steps& steps) : log_(log), steps_(steps), share_before_(steps.share_done()) {
     log_.info("{:>12} {:>10} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9}", "time", "dt", "Newton", "linear", "cuts",
-              "open", "stick", "slip", "elapsed", "remaining");
+              contact::state_names[0], contact::state_names[1], contact::state_names[2], "elapsed", "remaining");
   }
 
   void add(const StepTaken& step, const std::array<long long, 3>& faces) {

@@ -2,7 +2,7 @@
 #include "joints.hpp"
 #include "physics/mechanics/balanced_side.hpp"
 #include "physics/mechanics/joint_face.hpp"
-#include "physics/mechanics/joint_points_laws.hpp"
+#include "laws/joint_points_laws.hpp"
 #include "report.hpp"
 
 #include <cstdio>

@@ -3,13 +3,13 @@
 #include "assembly/capabilities.hpp"
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
+#include "laws/joint_slopes.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/joint_operators.hpp"
-#include "physics/mechanics/joint_slopes.hpp"
+#include "physics/mechanics/jump_outputs.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace sprekk::physics {
@@ -36,23 +36,6 @@ std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
 
 namespace {
 
-/// Ratio of shear traction to compression of a traction n, t[, t2] (Morris, Ferrill and Henderson 1996); none without
-/// compression.
-std::optional<Real> slip_tendency(const std::vector<Real>& traction) {
-  if (!(traction[0] < 0)) return {};
-  return std::hypot(traction[1], traction.size() > 2 ? traction[2] : 0) / -traction[0];
-}
-
-/// Moment magnitude of a seismic moment in N m (Hanks and Kanamori 1979); none for zero.
-std::optional<Real> moment_magnitude(const std::vector<Real>& moment) {
-  if (!(moment[0] > 0)) return {};
-  return 2.0 / 3 * (std::log10(moment[0]) - 9.1);
-}
-
-int joint_of(const ElasticPlasticJumpParameters& parameters, const mesh::Mesh& mesh, LocalIndex face) {
-  return parameters.joint_of_face.empty() ? mesh.fracture_faces[face].fracture : parameters.joint_of_face[face];
-}
-
 template <int dim>
 class ElasticPlasticJump final : public assembly::Module,
                                  public assembly::InitialValues,
@@ -61,8 +44,8 @@ class ElasticPlasticJump final : public assembly::Module,
                                  public assembly::RowWeights,
                                  public assembly::Errors {
  public:
-  using Points = JointPoints<dim>;
-  using Point = JointPoint<dim>;
+  using Points = laws::JointPoints<dim>;
+  using Point = laws::JointPoint<dim>;
 
   ElasticPlasticJump(bool has_tips, ElasticPlasticJumpParameters parameters)
       : has_tips_(has_tips), parameters_(std::move(parameters)) {}
@@ -83,7 +66,8 @@ class ElasticPlasticJump final : public assembly::Module,
     if (dissipates()) d.couplings.push_back({Loop::fracture_faces, parameters_.power_to, d.couplings[0].columns});
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
-    add_outputs(d);
+    declare_jump_outputs<dim>(
+        parameters_, [this](const auto& state, const auto& use) { for_each_jump(state, use); }, d);
     if (parameters_.n_kept > 0) {
       d.history.push_back({"kept by laws", face, parameters_.n_kept});
       d.history.push_back({"runaway slip", face, 1});
@@ -157,24 +141,16 @@ class ElasticPlasticJump final : public assembly::Module,
     const auto host = Kokkos::create_mirror_view(all);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
       for (const LocalIndex cell : mesh_->fracture_faces[f].cell) {
-        const Real G = parameters_.elasticity[elasticity_of(cell)].G;
+        const Real G = elasticity(cell).G;
         host(f) = std::max(host(f), single_size_[mesh_->fracture_faces[f].single] / G);
       }
     Kokkos::deep_copy(all, host);
     return all;
   }
-  int joint_of(LocalIndex face) const { return physics::joint_of(parameters_, *mesh_, face); }
-  int elasticity_of(LocalIndex cell) const {
-    return parameters_.elasticity_of_cell.empty() ? mesh_->cell_region[cell] : parameters_.elasticity_of_cell[cell];
-  }
-  struct Shown;
-  Real shear_modulus(LocalIndex f) const {
-    const auto& cell = mesh_->fracture_faces[f].cell;
-    return (parameters_.elasticity[elasticity_of(cell[0])].G + parameters_.elasticity[elasticity_of(cell[1])].G) / 2;
-  }
-  Real slip_since_start(LocalIndex f, const Shown& face) const;
+  const laws::JointParameters& joint(LocalIndex f) const { return parameters_.joints.of_face(*mesh_, f); }
+  const laws::Elasticity& elasticity(LocalIndex cell) const { return parameters_.elasticity.of_cell(*mesh_, cell); }
   ConstView<Real**> initial_jump() const;  ///< w_0 [face, dim]
-  void add_outputs(assembly::Declaration& d) const;
+  void for_each_jump(const assembly::State& state, const std::function<void(const JumpOfFace<dim>&)>& use) const;
   void set_points();
   void set_sizes();
 
@@ -220,7 +196,7 @@ template <int dim>
 void ElasticPlasticJump<dim>::initial_history(const std::vector<View<Real**>>& history) const {
   const auto p = Kokkos::create_mirror_view(history[0]);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-    for (int k = 0; k < dim - 1; ++k) p(f, k) = parameters_.joints[joint_of(f)].plastic_jump[k];
+    for (int k = 0; k < dim - 1; ++k) p(f, k) = joint(f).plastic_jump[k];
   Kokkos::deep_copy(history[0], p);
 }
 
@@ -242,12 +218,12 @@ void ElasticPlasticJump<dim>::bind(const assembly::Context& context) {
 template <int dim>
 void ElasticPlasticJump<dim>::set_points() {
   std::vector<laws::Joint> laws;
-  for (const auto& joint : parameters_.joints) laws.push_back(joint.law);
+  for (const auto& joint : parameters_.joints.values) laws.push_back(joint.law);
   std::vector<int> number;
   const View<Real***> frame("frame", mesh_->n_owned_fracture_faces, dim, dim);
   const auto host = Kokkos::create_mirror_view(frame);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-    number.push_back(joint_of(f));
+    number.push_back(parameters_.joints.number_of(f, mesh_->fracture_faces[f].fracture));
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) host(f, k, i) = mesh_->fracture_faces[f].frame[k][i];
   }
@@ -268,7 +244,7 @@ void ElasticPlasticJump<dim>::set_sizes() {
     const auto& face = mesh_->fracture_faces[f];
     Real modulus = std::numeric_limits<Real>::max(), height = 0;  // height of the cells
     for (const LocalIndex cell : face.cell) {
-      modulus = std::min(modulus, parameters_.elasticity[elasticity_of(cell)].youngs_modulus());
+      modulus = std::min(modulus, elasticity(cell).youngs_modulus());
       assembly::for_each_cell_point(*mesh_, cell, [&](Real volume, const auto&) { height += volume / face.area / 2; });
     }
     modulus_.push_back(modulus);
@@ -282,10 +258,10 @@ void ElasticPlasticJump<dim>::set_sizes() {
 template <int dim>
 void ElasticPlasticJump<dim>::commit(assembly::State& state) const {
   const Points points = at(state);
-  const JointHistory history{.plastic_jump = state.history[0],
-                             .slid = state.history[1],
-                             .runaway = parameters_.n_kept > 0 ? state.history[3] : View<Real**>(),
-                             .softness = softness_};
+  const laws::JointHistory history{.plastic_jump = state.history[0],
+                                   .slid = state.history[1],
+                                   .runaway = parameters_.n_kept > 0 ? state.history[3] : View<Real**>(),
+                                   .softness = softness_};
   const auto end = operators_->evaluate(points, state);
   Kokkos::parallel_for(
       "commit", Kokkos::RangePolicy<Execution>(0, end.extent(0)),
@@ -323,7 +299,7 @@ void ElasticPlasticJump<dim>::measure(const assembly::State& state, const assemb
   Real largest = 0;
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
-    const auto c = laws::augmentation(parameters_.joints[joint_of(f)].law, point.constant);
+    const auto c = laws::augmentation(joint(f).law, point.constant);
     Real square = 0;
     for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
     const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential) - point.rounding;
@@ -339,7 +315,7 @@ void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<con
   const auto kept = kept_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
-    const auto& law = parameters_.joints[joint_of(f)].law;
+    const auto& law = joint(f).law;
     Real p[dim - 1] = {}, shear[dim - 1], widening[dim] = {1};  // widening: derivative of w_n - g in w
     const auto contact = [&](Real normal, Real size) {
       return laws::contact<dim>(normal, size, p, point.p_old, kept(f));
@@ -351,7 +327,7 @@ void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<con
     }
     const Real slipped = laws::norm(p), sheared = laws::norm(shear);
     const bool moved = laws::augmentation(law, point.constant).tangential * slipped > 1e-13 * sheared;
-    const Real dilates = dilation_slope(law, contact(point.traction[0], slipped));
+    const Real dilates = laws::dilation_slope(law, contact(point.traction[0], slipped));
     for (int k = 1; k < dim; ++k) {
       const Real along = moved ? p[k - 1] / slipped : sheared > 0 ? shear[k - 1] / sheared : 0;
       widening[k] = -dilates * along;
@@ -412,111 +388,30 @@ bool ElasticPlasticJump<dim>::symmetric(const assembly::State& state) const {
   const auto kept = kept_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
-    const auto& law = parameters_.joints[joint_of(f)].law;
+    const auto& law = joint(f).law;
     const Real p[dim - 1] = {};
     const auto at = laws::contact<dim>(point.traction[0], Real(0), p, point.p_old, kept(f));
     const bool pulled = point.traction[0] > 0 && law.bond.n_history() > 0;
-    if (point.state == ContactState::slip || pulled || compliance_slope(law, at) != 0) symmetric = false;
+    if (point.state == ContactState::slip || pulled || laws::compliance_slope(law, at) != 0) symmetric = false;
   });
   return symmetric;
 }
 
-/// Output quantities of a face. The state of a face that slid in the step is on the friction limit of its present
-/// plastic jump.
 template <int dim>
-struct ElasticPlasticJump<dim>::Shown {
-  const Point& point;
-  ContactState state;
-  Real elastic[dim], plastic[dim], slip, aperture, slip_tendency = 0;
-  laws::Contact<Real> at;
-
-  Shown(const Point& point, const JointParameters& joint, bool slid, const laws::History& kept)
-      : point(point), state(slid ? ContactState::slip : ContactState::stick) {
-    if (point.state == ContactState::open) state = ContactState::open;
-    laws::split_jump<dim>(joint.law, state, point.w, point.traction, point.p_old, elastic, plastic, kept);
-    Real tangential[dim - 1];
-    for (int i = 0; i < dim - 1; ++i) tangential[i] = plastic[i + 1];
-    slip = laws::norm(tangential);
-    aperture = std::max(joint.least_aperture, joint.initial_aperture + point.w[0]);
-    at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, kept);
-    const Real bound = joint.law.bound(at);
-    if (!at.open && at.shear > 0) slip_tendency = at.shear / std::max(bound, at.shear * 1e-16);
-  }
-};
-
-template <int dim>
-Real ElasticPlasticJump<dim>::slip_since_start(LocalIndex f, const Shown& face) const {
-  Real slip[dim - 1];  // from the committed jump: exactly 0 if a face has never slid
-  for (int i = 0; i < dim - 1; ++i) slip[i] = face.point.p_old[i] - parameters_.joints[joint_of(f)].plastic_jump[i];
-  return laws::norm(slip);
-}
-
-template <int dim>
-void ElasticPlasticJump<dim>::add_outputs(assembly::Declaration& d) const {
-  using assembly::Summary;
-  const auto add = [&](const std::string& name, const char* unit, int n, const Summary& summary,
-                       const std::function<void(LocalIndex, const Shown&, std::vector<Real>&)>& append) {
-    const auto values = [this, append](const assembly::State& state) {
-      const auto slid = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
-      const auto kept = kept_on_host(state);
-      std::vector<Real> all;
-      for_each_face(state, [&](LocalIndex f, const Point& point) {
-        append(f, Shown(point, parameters_.joints[joint_of(f)], slid(f, 0) != 0, kept(f)), all);
-      });
-      return all;
-    };
-    d.outputs.push_back({{name, unit, fields::Entity::fracture_face, n, summary}, values});
-  };
-  const auto number = [&](const char* name, const char* unit, const Summary& summary, Real (*of)(const Shown&)) {
-    add(name, unit, 1, summary, [of](LocalIndex, const Shown& face, auto& all) { all.push_back(of(face)); });
-  };
-  const auto vector = [&](const std::string& name, const char* unit, const Real* (*of)(const Shown&),
-                          const std::vector<assembly::Derived>& derived = {}) {
-    add(name + " local", unit, dim, {Summary::mean, name, "local", {}, "", derived},
-        [of](LocalIndex, const Shown& face, auto& all) { all.insert(all.end(), of(face), of(face) + dim); });
-    add(name, unit, dim, {Summary::mean, name, "global"}, [this, of](LocalIndex f, const Shown& face, auto& all) {
-      for (int i = 0; i < dim; ++i) {
-        all.push_back(0);
-        for (int l = 0; l < dim; ++l) all.back() += mesh_->fracture_faces[f].frame[l][i] * of(face)[l];
-      }
-    });
-  };
-  vector("jump", "m", [](const Shown& face) { return face.point.w; });
-  vector("elastic jump", "m", [](const Shown& face) { return face.elastic; });
-  vector("plastic jump", "m", [](const Shown& face) { return face.plastic; });
-  vector("traction", "Pa", [](const Shown& face) { return face.point.traction; },
-         {{"slip_tendency", "-", slip_tendency}});
-  number("opening", "m", {Summary::mean_and_max, "opening"}, [](const Shown& face) { return face.point.w[0]; });
-  number("slip", "m", {Summary::mean_and_max, "slip"}, [](const Shown& face) { return face.slip; });
-  number("aperture", "m", {}, [](const Shown& face) { return face.aperture; });
-  number("state", "-", {Summary::fractions, "", "", {"open", "stick", "slip"}},
-         [](const Shown& face) { return static_cast<Real>(face.state); });
-  number("slip tendency", "-", {}, [](const Shown& face) { return face.slip_tendency; });
-  std::vector<assembly::Derived> magnitude;
-  if (dim == 3) magnitude = {{"moment_magnitude", "-", moment_magnitude}};
-  add("moment density", "N/m", 1, {Summary::integral, "moment", "", {}, dim == 3 ? "N*m" : "N", magnitude},
-      [this](LocalIndex f, const Shown& face, auto& all) {
-        all.push_back(shear_modulus(f) * slip_since_start(f, face));
-      });
-  if (parameters_.n_kept > 0)
-    d.outputs.push_back(
-        {{"runaway slip", "m", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "runaway slip"}},
-         [this](const assembly::State& state) {
-           const auto slip = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[3]);
-           std::vector<Real> all;
-           for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) all.push_back(slip(f, 0));
-           return all;
-         }});
-  for (const auto& quantity : parameters_.quantities) {
-    Summary summary{Summary::mean_and_max, quantity.name};
-    if (!quantity.error_of.empty()) summary = {Summary::error_bound, quantity.error_of};
-    std::vector<laws::QuantityOfFace> of_joint;
-    for (const auto& joint : parameters_.joints) of_joint.push_back(laws::quantity_of(joint.law, quantity.name));
-    add(quantity.name, quantity.unit.c_str(), 1, summary, [this, of_joint](LocalIndex f, const Shown& face, auto& all) {
-      const auto& value = of_joint[joint_of(f)];
-      all.push_back(value ? value(face.at) : 0);
-    });
-  }
+void ElasticPlasticJump<dim>::for_each_jump(const assembly::State& state,
+                                            const std::function<void(const JumpOfFace<dim>&)>& use) const {
+  const auto host = [&](int k) { return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[k]); };
+  const bool has_kept = parameters_.n_kept > 0;
+  const auto slid = host(1), runaway = host(has_kept ? 3 : 1);
+  const auto kept = kept_on_host(state);
+  for_each_face(state, [&](LocalIndex f, const Point& point) {
+    const auto& face = mesh_->fracture_faces[f];
+    JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) != 0, kept(f));
+    jump.number = parameters_.joints.number_of(f, face.fracture);
+    jump.shear_modulus = (elasticity(face.cell[0]).G + elasticity(face.cell[1]).G) / 2;
+    if (has_kept) jump.runaway = runaway(f, 0);
+    use(jump);
+  });
 }
 
 }  // namespace
@@ -525,7 +420,7 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
   auto jumps = initial_tractions(mesh, parameters);
   if (parameters.initial_stress.empty()) return jumps;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-    const auto& joint = parameters.joints[joint_of(parameters, mesh, f)];
+    const auto& joint = parameters.joints.of_face(mesh, f);
     const auto& law = joint.law;
     const auto& plastic = joint.plastic_jump;
     const Real pressed = jumps[f][0];

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "assembly/module.hpp"
+#include "fields/properties.hpp"
 #include "laws/elasticity.hpp"
-#include "laws/joint.hpp"
+#include "laws/joint_parameters.hpp"
 #include "laws/joint_quantities.hpp"
 #include "physics/mechanics/loads.hpp"
 
@@ -14,20 +15,10 @@
 
 namespace sprekk::physics {
 
-/// Joint properties of a fracture.
-struct JointParameters {
-  laws::Joint law;
-  Real initial_aperture = 0;           ///< a0 of (15), m
-  Real least_aperture = 0;             ///< residual aperture, m
-  std::array<Real, 2> plastic_jump{};  ///< initial tangential plastic jump in the face frame, m
-};
-
 struct ElasticPlasticJumpParameters {
-  std::vector<JointParameters> joints;       ///< distinct joints
-  std::vector<laws::Elasticity> elasticity;  ///< of the rock; used only for the size of the augmentation
+  fields::Properties<laws::JointParameters> joints;  ///< of owned fracture faces, grouped by fractures
+  fields::Properties<laws::Elasticity> elasticity;   ///< of local cells, grouped by regions
   InitialStress initial_stress = {};
-  std::vector<int> elasticity_of_cell = {};  ///< [local cell] number in elasticity; empty: region of the cell
-  std::vector<int> joint_of_face = {};       ///< [owned fracture face] number in joints; empty: fracture of the face
   /// Factor of the augmentation constant, c / (E/L) with the size L of the fracture. Affects Newton's iterates, not
   /// solutions.
   Real augmentation = 0.3;
@@ -58,7 +49,7 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// History variables:
 /// - plastic tangential jump p_old [face, dim - 1], set to w_t on open faces and w_t - lambda_t/K_t on sliding faces;
 /// - "kept by laws" [face, n_kept], if any, updated by the laws;
-/// - with these "runaway slip" [face, 1]: largest unstable slip of a step so far, see runaway.hpp.
+/// - with these "runaway slip" [face, 1]: largest unstable slip of a step so far, see laws/runaway.hpp.
 ///
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
 /// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b. The quantities of laws are 0 on joints

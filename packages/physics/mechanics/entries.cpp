@@ -69,7 +69,7 @@ Real Mechanics::Rock::density_at(const std::array<Real, 3>& x) const {
 }
 
 /// Declares the entries of all laws if the selection is not known.
-void Mechanics::Joint::describe(base::Section& s) { JointMaterial::describe(s, s.documents() || !s.is_sound()); }
+void Mechanics::Joint::describe(base::Section& s) { laws::JointMaterial::describe(s, s.documents() || !s.is_sound()); }
 
 void Mechanics::Bulk::describe(base::Section& s) {
   s.entry(rigid, "rigid", "-", "switch for rigid rock, without mechanics and displacements");

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assembly/slots.hpp"
-#include "physics/mechanics/joint_points.hpp"
+#include "laws/joint_points.hpp"
 
 #include <limits>
 #include <type_traits>
@@ -23,7 +23,7 @@ namespace sprekk::physics {
 template <int dimension, int n_nodes, bool tips>
 struct JointFace {
   static constexpr int dim = dimension, n = n_nodes;
-  using Point = JointPoint<dim>;
+  using Point = laws::JointPoint<dim>;
   template <class... More>
   using Slots =
       assembly::Slots<assembly::Slot<2 * n, dim>, assembly::Slot<1, 2 * dim>, assembly::Slot<1, dim>, More...>;
@@ -31,7 +31,7 @@ struct JointFace {
   using Rows = assembly::Slots<assembly::Slot<1, dim>>;
   static constexpr int beta = 2 * n * dim, lambda = beta + 2 * dim, q = lambda + dim;  // offsets in x
 
-  JointPoints<dim> points;
+  laws::JointPoints<dim> points;
   ConstView<Real**> share, tip_share;
   ConstView<Real*> bubble_mean;
   ConstView<Real**> rest = {};
@@ -119,7 +119,7 @@ struct JointFace {
 };
 
 /// Power dissipated by plastic slip of a face, a source of a row of stored energy: r = -A/dt work, see
-/// JointPoints::work().
+/// laws::JointPoints::work().
 ///
 /// | symbol | shape           | unit |                    |
 /// | x      | as in JointFace |      |                    |

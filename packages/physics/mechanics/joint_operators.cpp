@@ -34,7 +34,7 @@ template <class Face>
 class OperatorsOf final : public JointOperators<Face::dim> {
  public:
   static constexpr int dim = Face::dim, n = Face::n;
-  using Points = JointPoints<dim>;
+  using Points = laws::JointPoints<dim>;
 
   OperatorsOf(const assembly::Context& context, const std::vector<int>& fields, int power_to,
               const ConstView<Real**>& rest)
@@ -62,9 +62,9 @@ class OperatorsOf final : public JointOperators<Face::dim> {
     sliding_->add_jacobian({at(points), area_, state.rate}, state, J);
   }
 
-  View<JointPoint<dim>*> evaluate(const Points& points, const assembly::State& state) const override {
+  View<laws::JointPoint<dim>*> evaluate(const Points& points, const assembly::State& state) const override {
     const Face face = at(points);
-    const View<JointPoint<dim>*> all("points", faces_.n_entities());
+    const View<laws::JointPoint<dim>*> all("points", faces_.n_entities());
     faces_.for_each(
         face, state, KOKKOS_LAMBDA(int f, const Real(&x)[Face::Columns::size]) { all(f) = face.point(f, x); });
     return all;

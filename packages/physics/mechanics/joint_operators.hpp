@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assembly/module.hpp"
-#include "physics/mechanics/joint_points.hpp"
+#include "laws/joint_points.hpp"
 
 #include <memory>
 #include <vector>
@@ -17,18 +17,20 @@ class JointOperators {
   virtual ~JointOperators() = default;
 
   /// Adds R(w, lambda) of each owned face, and its derivatives.
-  virtual void add_residual(const JointPoints<dim>& points, const assembly::State& state,
+  virtual void add_residual(const laws::JointPoints<dim>& points, const assembly::State& state,
                             const assembly::Rows& r) const = 0;
-  virtual void add_jacobian(const JointPoints<dim>& points, const assembly::State& state, fields::BlockMatrix& J) = 0;
+  virtual void add_jacobian(const laws::JointPoints<dim>& points, const assembly::State& state,
+                            fields::BlockMatrix& J) = 0;
 
   /// Adds the power of friction, see SlidingFace, to the rows that store it, and its derivatives.
-  virtual void add_power(const JointPoints<dim>& points, const assembly::State& state,
+  virtual void add_power(const laws::JointPoints<dim>& points, const assembly::State& state,
                          const assembly::Rows& r) const = 0;
-  virtual void add_power_jacobian(const JointPoints<dim>& points, const assembly::State& state,
+  virtual void add_power_jacobian(const laws::JointPoints<dim>& points, const assembly::State& state,
                                   fields::BlockMatrix& J) = 0;
 
   /// Results of all owned faces, on the device.
-  virtual View<JointPoint<dim>*> evaluate(const JointPoints<dim>& points, const assembly::State& state) const = 0;
+  virtual View<laws::JointPoint<dim>*> evaluate(const laws::JointPoints<dim>& points,
+                                                const assembly::State& state) const = 0;
 };
 
 /// Creates the kernels. `fields`: blocks of displacement, side bubble, traction and, with enriched tips, tip

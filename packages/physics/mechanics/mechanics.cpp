@@ -27,7 +27,7 @@ Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const ba
 
 /// Joint parameters of faces: the law at the face centre, with the face means of the gap and of the initial plastic
 /// jump, since jumps are means too.
-fields::Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
+fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
   const bool own = !scene.own_joints.empty();  // groups: single fractures or fracture sets
   const auto section = [&](int group) -> const Fracture& {
     return scene.fractures.at(mesh.fracture_names[own ? mesh.single_fractures[group].set : group]);
@@ -38,7 +38,7 @@ fields::Properties<JointParameters> joints(const Scene& scene, const mesh::Mesh&
   std::vector<int> group_of;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
     group_of.push_back(own ? mesh.fracture_faces[f].single : mesh.fracture_faces[f].fracture);
-  auto result = fields::properties<JointParameters>(
+  auto result = fields::properties<laws::JointParameters>(
       static_cast<int>(own ? mesh.single_fractures.size() : mesh.fracture_names.size()), group_of,
       [&](int fracture) {
         const auto& jump = section(fracture).plastic_jump;
@@ -265,8 +265,7 @@ std::vector<StartOfFace> starts_of_faces(const Setting& setting) {
     const auto tractions = initial_tractions(setting.mesh, parameters);
     const Real zero = 0;  // all history variables
     for (LocalIndex f = 0; f < setting.mesh.n_owned_fracture_faces; ++f) {
-      const auto& joint = parameters.joints[parameters.joint_of_face.empty() ? setting.mesh.fracture_faces[f].fracture
-                                                                             : parameters.joint_of_face[f]];
+      const auto& joint = parameters.joints.of_face(setting.mesh, f);
       laws::Contact<Real> at{.lambda_n = tractions[f][0], .dim = setting.mesh.dim(), .history = {&zero, 0}};
       at.plastic_slip = std::hypot(joint.plastic_jump[0], joint.plastic_jump[1]);
       for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = joint.plastic_jump[k];

@@ -4,7 +4,7 @@
 #include "base/expression.hpp"
 #include "fields/properties.hpp"
 #include "laws/elasticity.hpp"
-#include "physics/mechanics/joint_material.hpp"
+#include "laws/joint_material.hpp"
 #include "physics/mechanics/loads.hpp"
 #include "physics/physics.hpp"
 
@@ -51,7 +51,7 @@ struct Mechanics : Physics<Mechanics> {
     Real density_at(const std::array<Real, 3>& x) const;  ///< throws the same errors; requires a density
   };
 
-  struct Joint : Physics::Joint, JointMaterial {
+  struct Joint : Physics::Joint, laws::JointMaterial {
     void describe(base::Section& section);
     void check(base::Section& section) const { compare_entries(section); }
   };

@@ -15,14 +15,15 @@ namespace sprekk::physics {
 namespace {
 
 /// Largest number of history variables per face. Collective.
-int most_kept(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
+int most_kept(const mesh::Mesh& mesh, const std::vector<laws::JointParameters>& joints) {
   int here = 0;
   for (const auto& joint : joints) here = std::max(here, joint.law.n_history(mesh.dim()));
   return base::max_over_ranks(*mesh.comm, here);
 }
 
 /// Quantities that joints of any rank provide. Collective.
-std::vector<laws::JointQuantity> told_quantities(const mesh::Mesh& mesh, const std::vector<JointParameters>& joints) {
+std::vector<laws::JointQuantity> told_quantities(const mesh::Mesh& mesh,
+                                                 const std::vector<laws::JointParameters>& joints) {
   const auto all = laws::joint_quantities();
   std::vector<Real> told(all.size());
   for (const auto& joint : joints)
@@ -50,11 +51,9 @@ std::string module_name(const std::string& condition, const mesh::Mesh& mesh,
 ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const MechanicsParameters& parameters) {
   const auto& bulk = parameters.bulk;
   const auto& fluid = parameters.initial_pressure.empty() ? parameters.fluid_pressure : parameters.initial_pressure;
-  return {.joints = parameters.joints.values,
-          .elasticity = bulk.elasticity.values,
+  return {.joints = parameters.joints,
+          .elasticity = bulk.elasticity,
           .initial_stress = bulk.initial_stress,
-          .elasticity_of_cell = bulk.elasticity.number,
-          .joint_of_face = parameters.joints.number,
           .augmentation = parameters.augmentation,
           .fluid_pressure = fluid,
           .start = parameters.start,

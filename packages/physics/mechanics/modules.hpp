@@ -13,8 +13,8 @@ namespace sprekk::physics {
 struct MechanicsParameters {
   BulkMomentumParameters bulk;
   std::map<std::string, ElasticFoundationParameters> foundations = {};  ///< [name of the boundary condition]
-  fields::Properties<Real> solid_modulus = {};      ///< [cell] see SolidPressureParameters; empty: zero
-  fields::Properties<JointParameters> joints = {};  ///< of owned fracture faces, grouped by fractures
+  fields::Properties<Real> solid_modulus = {};            ///< [cell] see SolidPressureParameters; empty: zero
+  fields::Properties<laws::JointParameters> joints = {};  ///< of owned fracture faces, grouped by fractures
   FluidPressure fluid_pressure = {};
   FluidPressure initial_pressure = {};  ///< initial "face pressure" of a fluid with unknown pressure
   Real start = 0;                       ///< time of the initial state, s

@@ -3,7 +3,7 @@
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/elastic_plastic_jump.hpp"
-#include "physics/mechanics/joint_slopes.hpp"
+#include "laws/joint_slopes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,8 +70,8 @@ std::array<Real, 2> steepest(const laws::Joint& law, const std::array<Real, 2>& 
   constexpr int n = 40;
   for (int k = 0; k <= n; ++k) {
     const Real compression = compressions[0] * std::pow(compressions[1] / compressions[0], Real(k) / n);
-    const Real mu = physics::bound_slope(law, compression),
-               opens = physics::dilation_slope(law, {.lambda_n = -compression, .history = {&zero, 0}});
+    const Real mu = laws::bound_slope(law, compression),
+               opens = laws::dilation_slope(law, {.lambda_n = -compression, .history = {&zero, 0}});
     if (mu * opens > slopes[0] * slopes[1]) slopes = {mu, opens};
   }
   return slopes;
@@ -138,7 +138,7 @@ std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) 
 std::string friction_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const auto [least, most] = compressions(scene);
   std::string joint;
-  physics::JointMaterial::Slope steepest{1, true, 0};
+  laws::JointMaterial::Slope steepest{1, true, 0};
   for (const auto& [material, called] : used_joints(scene, mesh)) {
     const auto slope = material.friction_slope(least, most);
     if (!slope || slope->largest <= steepest.largest) continue;
@@ -169,11 +169,11 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     law.bond = laws::Bond();  // softening of the bond does not grow with the compression
     const Real unloads = 1 / (size / rock->G + law.elastic.initial_compliance());
     for (Real slip = 1e-9; slip < 10; slip *= 1.5) {
-      const Real fall = physics::weakening(law, {.lambda_n = -compression,
-                                                 .plastic_slip = slip,
-                                                 .slip_of_step = slip,
-                                                 .plastic_jump = {slip, 0},
-                                                 .history = {&zero, 0}});
+      const Real fall = laws::weakening(law, {.lambda_n = -compression,
+                                              .plastic_slip = slip,
+                                              .slip_of_step = slip,
+                                              .plastic_jump = {slip, 0},
+                                              .history = {&zero, 0}});
       if (!(fall * lowest > unloads * compression)) continue;
       lowest = unloads * compression / fall;
       weakest = called;
@@ -197,7 +197,7 @@ std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
     auto apart = whole;
     apart.separation = little;
     const Real softens[] = {(law.cohesion(whole).strength - law.cohesion(apart).strength) / little,
-                            physics::weakening(law, whole)};
+                            laws::weakening(law, whole)};
     const Real unloads[] = {1 / (size / (rock->lambda + 2 * rock->G) + law.gap.closure.initial_compliance()),
                             1 / (size / rock->G + law.elastic.initial_compliance())};
     for (int k = 0; k < 2; ++k)

@@ -12,8 +12,8 @@ namespace {
 
 using laws::ContactState;
 
-JointParameters full_joint() {
-  JointParameters joint;
+laws::JointParameters full_joint() {
+  laws::JointParameters joint;
   joint.law = {laws::LinearShear{0.5},
                laws::CoulombFriction{0.6},
                {0.01, laws::ConstantDilation{0.2}, laws::BartonBandisClosure{0.1, 5}}};

@@ -152,8 +152,8 @@ Dense jump_operator(const Rock& rock, const Face& face, const Blocks& blocks) {
   return frame_of(rock, face) * W;
 }
 
-JointParameters simple_joint(Real compliance, Real maximum_closure) {
-  JointParameters joint;
+laws::JointParameters simple_joint(Real compliance, Real maximum_closure) {
+  laws::JointParameters joint;
   joint.law.elastic = laws::LinearShear{compliance};
   joint.law.friction = laws::CoulombFriction{0.6};
   joint.law.gap.closure = laws::BartonBandisClosure{maximum_closure, 5};

@@ -37,7 +37,7 @@ struct Rock {
   mesh::GlobalMesh global;
   RCP<const mesh::Mesh> mesh;
   std::vector<laws::Elasticity> elasticity;  ///< [region]
-  JointParameters joint;
+  laws::JointParameters joint;
   std::unique_ptr<assembly::System> system;
 
   int dim() const { return mesh->dim(); }
@@ -74,7 +74,7 @@ inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}
   Rock rock{global, mesh::make_distributed(global, comm), {soft, stiff}, joint, nullptr};
   const MechanicsParameters mechanics{
       .bulk = {.elasticity = {rock.elasticity}, .body_force = {loads.body_force}, .tractions = loads.tractions},
-      .joints = {std::vector<JointParameters>(global.fracture_names.size(), joint)}};
+      .joints = {std::vector<laws::JointParameters>(global.fracture_names.size(), joint)}};
   rock.system = std::make_unique<assembly::System>(rock.mesh, make_mechanics(*rock.mesh, mechanics), conditions,
                                                    rcp(new base::Timers));
   rock.system->set_time(1, 1);

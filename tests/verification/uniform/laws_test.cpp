@@ -55,8 +55,8 @@ Overrides along_path(const std::string& table) {
 }
 
 /// Sets the entries of a law in the joint.
-void set(physics::JointMaterial& joint, const Law& law) {
-  using Material = physics::JointMaterial;
+void set(laws::JointMaterial& joint, const Law& law) {
+  using Material = laws::JointMaterial;
   const std::map<std::string, std::string Material::*> roles = {
       {"friction", &Material::friction},
       {"dilation", &Material::dilation},

@@ -3,18 +3,18 @@
 
 #include "laws/joint.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::laws {
 
 /// Slope -db/dlambda_n of the bound of a joint without slip.
-Real bound_slope(const laws::Joint& law, Real compression);
+Real bound_slope(const Joint& law, Real compression);
 
 /// Slope -db/ds, Pa/m, of the bound with respect to further slip in the step; positive for slip weakening.
-Real weakening(const laws::Joint& law, const laws::Contact<Real>& at);
+Real weakening(const Joint& law, const Contact<Real>& at);
 
 /// Derivative of the tangential compliance by the normal traction, m/Pa^2.
-Real compliance_slope(const laws::Joint& law, const laws::Contact<Real>& at);
+Real compliance_slope(const Joint& law, const Contact<Real>& at);
 
 /// Opening per plastic slip, m/m. `at` contains the history variables of the joint.
-Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at);
+Real dilation_slope(const Joint& law, const Contact<Real>& at);
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::laws

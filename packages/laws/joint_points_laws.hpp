@@ -2,12 +2,12 @@
 #pragma once
 
 #include "laws/joint.hpp"
-#include "physics/mechanics/joint_points.hpp"
-#include "physics/mechanics/runaway.hpp"
+#include "laws/joint_points.hpp"
+#include "laws/runaway.hpp"
 
 #include <Sacado.hpp>
 
-namespace sprekk::physics {
+namespace sprekk::laws {
 
 /// Value with derivatives in w, then in lambda.
 template <int dim>
@@ -44,21 +44,21 @@ KOKKOS_INLINE_FUNCTION void JointPoints<dim>::contact(int f, const T (&w)[dim], 
 
 template <int dim>
 template <class T>
-KOKKOS_INLINE_FUNCTION laws::ContactState JointPoints<dim>::evaluate(int f, const T (&w)[dim], const T (&traction)[dim],
-                                                                     T (&R)[dim]) const {
+KOKKOS_INLINE_FUNCTION ContactState JointPoints<dim>::evaluate(int f, const T (&w)[dim], const T (&traction)[dim],
+                                                               T (&R)[dim]) const {
   Real old[dim - 1];
   for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
   T jump[dim], borne[dim];
   contact(f, w, traction, jump, borne);
   const auto& joint = law[number(f)];
-  return laws::contact_residual<dim>(joint, laws::augmentation(joint, constant(f)), jump, borne, old, R, history(f));
+  return contact_residual<dim>(joint, laws::augmentation(joint, constant(f)), jump, borne, old, R, history(f));
 }
 
 template <int dim>
 template <class T>
-KOKKOS_INLINE_FUNCTION void JointPoints<dim>::damp(int f, laws::ContactState state, T (&R)[dim]) const {
+KOKKOS_INLINE_FUNCTION void JointPoints<dim>::damp(int f, ContactState state, T (&R)[dim]) const {
   const Real share = damping.extent(0) > 0 ? damping(f) : 0;
-  if (share == 0 || state == laws::ContactState::stick) return;
+  if (share == 0 || state == ContactState::stick) return;
   const auto& joint = law[number(f)];
   const auto constants = laws::augmentation(joint, constant(f));
   const auto add = [&](int k, Real stiffness, Real compliance) {
@@ -66,7 +66,7 @@ KOKKOS_INLINE_FUNCTION void JointPoints<dim>::damp(int f, laws::ContactState sta
     R[k].fastAccessDx(dim + k) += stiffness * compliance;
   };
   for (int k = 1; k < dim; ++k) add(k, share * constants.tangential, joint.elastic.initial_compliance());
-  if (state == laws::ContactState::open) add(0, share * constants.normal, joint.gap.closure.initial_compliance());
+  if (state == ContactState::open) add(0, share * constants.normal, joint.gap.closure.initial_compliance());
 }
 
 template <int dim>
@@ -83,23 +83,23 @@ KOKKOS_INLINE_FUNCTION T JointPoints<dim>::dissipated(int f, const T (&w)[dim], 
     sum += traction[i + 1] * (p[i] - old[i]);
   }
   const auto gap = [&](const T(&jump)[dim - 1]) {
-    auto at = laws::contact<dim>(traction[0], laws::norm(jump), jump, old, history(f));
+    auto at = laws::contact<dim>(traction[0], norm(jump), jump, old, history(f));
     T step[dim - 1], shear[dim - 1];
     for (int i = 0; i < dim - 1; ++i) {
       step[i] = jump[i] - old[i];
       shear[i] = traction[i + 1];
     }
-    at.slip_of_step = laws::norm(step);
+    at.slip_of_step = norm(step);
     for (int i = 0; i < dim - 1 && at.slip_of_step > 0; ++i) at.slip_direction[i] = step[i] / at.slip_of_step;
-    at.shear = laws::norm(shear);
+    at.shear = norm(shear);
     return joint.normal_gap(at);
   };
   return sum + traction[0] * (gap(p) - gap(before));
 }
 
 template <int dim>
-KOKKOS_FUNCTION laws::ContactState JointPoints<dim>::residual(int f, const Real (&w)[dim], const Real (&lambda)[dim],
-                                                              Real (&R)[dim]) const {
+KOKKOS_FUNCTION ContactState JointPoints<dim>::residual(int f, const Real (&w)[dim], const Real (&lambda)[dim],
+                                                        Real (&R)[dim]) const {
   return evaluate(f, w, lambda, R);
 }
 
@@ -131,21 +131,21 @@ template <int dim>
 KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end, const JointHistory& to) const {
   const auto& joint = law[number(f)];
   const auto& p = to.plastic_jump;
-  to.slid(f, 0) = end.state == laws::ContactState::slip;
-  if (end.state != laws::ContactState::stick) {
+  to.slid(f, 0) = end.state == ContactState::slip;
+  if (end.state != ContactState::stick) {
     Real elastic[dim], plastic[dim];
-    laws::split_jump<dim>(joint, end.state, end.w, end.traction, end.p_old, elastic, plastic, history(f));
+    split_jump<dim>(joint, end.state, end.w, end.traction, end.p_old, elastic, plastic, history(f));
     for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
   }
   if (kept.extent(1) == 0) return;
   Real now[dim - 1];
   for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
-  const auto contact = laws::converged<dim>(joint, end.state, end.w, end.traction, now, end.p_old, history(f));
-  if (end.state == laws::ContactState::slip) {
+  const auto contact = converged<dim>(joint, end.state, end.w, end.traction, now, end.p_old, history(f));
+  if (end.state == ContactState::slip) {
     const Real slip = runaway_slip(joint, contact, to.softness(f) + joint.elastic.initial_compliance());
     if (slip > to.runaway(f, 0)) to.runaway(f, 0) = slip;
   }
   joint.commit(contact, kept_of(f));
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::laws

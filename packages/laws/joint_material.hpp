@@ -11,12 +11,10 @@
 #include <vector>
 
 namespace sprekk::laws {
+
+// declared only: a new law does not recompile all users of scenes
 struct HydraulicAperture;
-}
-
-namespace sprekk::physics {
-
-struct JointParameters;  // declared only: a new joint law does not recompile all users of scenes
+struct JointParameters;
 
 /// Names of the joint laws with the values of their entries, see laws/joint_kinds.hpp. Every value may be an expression
 /// of x, y, z.
@@ -51,7 +49,7 @@ struct JointMaterial {
   JointParameters joint(const Point& x) const;
   void check(const Point& x) const;  ///< throws the same errors
   /// Hydraulic aperture as a function of the mechanical aperture, at a point. Throws the same errors.
-  laws::HydraulicAperture walls(const Point& x) const;
+  HydraulicAperture walls(const Point& x) const;
 
   /// Slope of the shear bound as a function of the compression, from the derivative of the law.
   struct Slope {
@@ -63,4 +61,4 @@ struct JointMaterial {
   std::optional<Slope> friction_slope(Real least_compression, Real largest_compression) const;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::laws

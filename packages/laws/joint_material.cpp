@@ -1,22 +1,21 @@
-#include "physics/mechanics/joint_material.hpp"
+#include "laws/joint_material.hpp"
 
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "laws/conduit.hpp"
-#include "physics/mechanics/elastic_plastic_jump.hpp"
-#include "physics/mechanics/joint_slopes.hpp"
+#include "laws/joint_parameters.hpp"
+#include "laws/joint_slopes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-namespace sprekk::physics {
+namespace sprekk::laws {
 
 namespace {
 
 using Value = JointMaterial::Value;
-using laws::Entry;
 
 /// Description of a law. Entries with the same number are alternatives.
 struct Kind {
@@ -45,7 +44,7 @@ Kind kind() {
 }
 
 template <class... Ks>
-std::vector<Kind> kinds(const laws::Kinds<Ks...>&) {
+std::vector<Kind> kinds(const Kinds<Ks...>&) {
   return {kind<Ks>()...};
 }
 
@@ -96,19 +95,16 @@ struct Role {
 const std::vector<Role>& roles() {
   static const std::vector<Role> all = {
       {"tangential elasticity", "law of the elastic part of the tangential jump", &JointMaterial::tangential_elasticity,
-       kinds(laws::ShearKinds())},
-      {"friction", "friction law, the bound on the shear traction", &JointMaterial::friction,
-       kinds(laws::FrictionKinds())},
-      {"dilation", "dilation law, the opening by slip", &JointMaterial::dilation, kinds(laws::DilationKinds())},
-      {"closure", "closure law, the normal closure under compression", &JointMaterial::closure,
-       kinds(laws::ClosureKinds())},
+       kinds(ShearKinds())},
+      {"friction", "friction law, the bound on the shear traction", &JointMaterial::friction, kinds(FrictionKinds())},
+      {"dilation", "dilation law, the opening by slip", &JointMaterial::dilation, kinds(DilationKinds())},
+      {"closure", "closure law, the normal closure under compression", &JointMaterial::closure, kinds(ClosureKinds())},
       {"bond", "bond law, the cohesion and tensile strength in addition to friction", &JointMaterial::bond,
-       kinds(laws::BondKinds())},
-      {"damage", "damage law, the wear of friction and dilation", &JointMaterial::damage, kinds(laws::DamageKinds())},
-      {"damage driver", "driver of damage, per unit of slip", &JointMaterial::damage_driver,
-       kinds(laws::DriverKinds())},
+       kinds(BondKinds())},
+      {"damage", "damage law, the wear of friction and dilation", &JointMaterial::damage, kinds(DamageKinds())},
+      {"damage driver", "driver of damage, per unit of slip", &JointMaterial::damage_driver, kinds(DriverKinds())},
       {"hydraulic aperture", "hydraulic aperture law, the aperture for flow in the fracture, with \"Flow\"",
-       &JointMaterial::hydraulic_aperture, kinds(laws::ApertureKinds())}};
+       &JointMaterial::hydraulic_aperture, kinds(ApertureKinds())}};
   return all;
 }
 
@@ -274,7 +270,7 @@ K law_at(const JointMaterial& material, const JointMaterial::Point& x) {
 }
 
 template <class Part, class... Ks>
-void set_part(Part& part, const laws::Kinds<Ks...>&, const std::string& kind, const JointMaterial& material,
+void set_part(Part& part, const Kinds<Ks...>&, const std::string& kind, const JointMaterial& material,
               const JointMaterial::Point& x) {
   ((kind == Ks::name ? void(part = law_at<Ks>(material, x)) : void()), ...);
 }
@@ -283,16 +279,16 @@ Real degrees(Real tangent) { return std::atan(tangent) * 180 / M_PI; }
 
 /// Error message if slip from rest would release energy, i.e. if friction is below the work of dilation: b < N dg/ds.
 /// Checks laws with history variables at some slips and compressions; empty: no error found.
-std::string gain_by_slip(const laws::Joint& law) {
+std::string gain_by_slip(const Joint& law) {
   if (law.n_history() == 0) return "";
   const Real zero = 0;  // all history variables
   for (const Real compression : {1.0, 1e3, 1e5, 1e6, 1e7})
     for (const Real slip : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
-      const laws::Contact<Real> at{.lambda_n = -compression,
-                                   .plastic_slip = slip,
-                                   .slip_of_step = slip,
-                                   .plastic_jump = {slip, 0},
-                                   .history = {&zero, 0}};
+      const Contact<Real> at{.lambda_n = -compression,
+                             .plastic_slip = slip,
+                             .slip_of_step = slip,
+                             .plastic_jump = {slip, 0},
+                             .history = {&zero, 0}};
       const Real opens = dilation_slope(law, at);
       if (!(opens > 0)) continue;
       const Real bound = law.friction_bound(at);
@@ -402,50 +398,50 @@ JointParameters JointMaterial::joint(const Point& x) const {
   for (const auto& [entry, what] : missing())
     throw Error(entry.empty() ? what : fmt::format("\"{}\": {}", entry, what));
   JointParameters joint;
-  set_part(joint.law.elastic, laws::ShearKinds(), tangential_elasticity, *this, x);
-  set_part(joint.law.friction, laws::FrictionKinds(), friction, *this, x);
-  set_part(joint.law.gap.dilation, laws::DilationKinds(), dilation, *this, x);
-  set_part(joint.law.gap.closure, laws::ClosureKinds(), closure, *this, x);
-  set_part(joint.law.bond, laws::BondKinds(), bond, *this, x);
-  set_part(joint.law.damage, laws::DamageKinds(), damage, *this, x);
-  set_part(joint.law.driver, laws::DriverKinds(), damage_driver, *this, x);
+  set_part(joint.law.elastic, ShearKinds(), tangential_elasticity, *this, x);
+  set_part(joint.law.friction, FrictionKinds(), friction, *this, x);
+  set_part(joint.law.gap.dilation, DilationKinds(), dilation, *this, x);
+  set_part(joint.law.gap.closure, ClosureKinds(), closure, *this, x);
+  set_part(joint.law.bond, BondKinds(), bond, *this, x);
+  set_part(joint.law.damage, DamageKinds(), damage, *this, x);
+  set_part(joint.law.driver, DriverKinds(), damage_driver, *this, x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.strength = 1 / strength_reduction;
   const Real zero = 0;  // all history variables
-  laws::Contact<Real> at_rest;
+  Contact<Real> at_rest;
   at_rest.history = {&zero, 0};
   const Real dilates = dilation_slope(joint.law, at_rest);
   joint.law.sliding_compliance =
       std::max(bound_slope(joint.law, 0) * dilates, Real(0)) * joint.law.elastic.initial_compliance();
   joint.initial_aperture = initial_aperture(x, 0);
   const std::string gain = gain_by_slip(joint.law);
-  using Friction = laws::MobilisedBartonChoubeyFriction;
-  SPREKK_CHECK(gain.empty() || friction != Friction::name || dilation == laws::MobilisedDilation::name,
+  using Friction = MobilisedBartonChoubeyFriction;
+  SPREKK_CHECK(gain.empty() || friction != Friction::name || dilation == MobilisedDilation::name,
                "{}; friction \"{}\" is 0 at the start of slip and requires dilation \"{}\", which begins later", gain,
-               friction, laws::MobilisedDilation::name);
+               friction, MobilisedDilation::name);
   SPREKK_CHECK(gain.empty(), "{}", gain);
   return joint;
 }
 
-laws::HydraulicAperture JointMaterial::walls(const Point& x) const {
+HydraulicAperture JointMaterial::walls(const Point& x) const {
   check(x);
-  laws::HydraulicAperture walls;
-  set_part(walls, laws::ApertureKinds(), hydraulic_aperture, *this, x);
+  HydraulicAperture walls;
+  set_part(walls, ApertureKinds(), hydraulic_aperture, *this, x);
   return walls;
 }
 
 std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Real largest) const {
   const auto& role =
       *std::find_if(roles().begin(), roles().end(), [](const auto& one) { return one.name == "friction"; });
-  bool known = friction != laws::NoSlip::name;
+  bool known = friction != NoSlip::name;
   for_each_number(*this, role, [&](const auto& names, const auto& given, bool needed) {
     for (const auto& name : given) known = known && entry(name)->is_constant();
     known = known && !(needed && given.empty());
   });
   if (!known) return {};
-  laws::Joint law;
+  Joint law;
   law.strength = 1 / strength_reduction;
-  set_part(law.friction, laws::FrictionKinds(), friction, *this, {});
+  set_part(law.friction, FrictionKinds(), friction, *this, {});
   Slope slope{-std::numeric_limits<Real>::infinity(), true, 0};
   Real first = 0;
   constexpr int n = 40;  // number of compressions, evenly spaced on a logarithmic scale
@@ -459,4 +455,4 @@ std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Re
   return slope;
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::laws

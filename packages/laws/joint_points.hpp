@@ -5,14 +5,14 @@
 #include "laws/contact.hpp"
 #include "laws/joint_fwd.hpp"
 
-namespace sprekk::physics {
+namespace sprekk::laws {
 
 /// Jump, traction, residual, last plastic jump, contact state and augmentation constant of a face. `rounding`: rounding
 /// error of the jump, m.
 template <int dim>
 struct JointPoint {
   Real w[dim], traction[dim], R[dim], p_old[dim - 1];
-  laws::ContactState state;
+  ContactState state;
   Real constant, rounding;
 };
 
@@ -42,7 +42,7 @@ struct JointHistory {
 template <int dim>
 struct JointPoints {
   ConstView<Real***> frame;
-  const laws::Joint* law = nullptr;
+  const Joint* law = nullptr;
   ConstView<int*> number;
   ConstView<Real*> augmentation;
   View<Real**> p_old = {};
@@ -56,18 +56,17 @@ struct JointPoints {
   KOKKOS_INLINE_FUNCTION Real constant(int f) const {
     return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
   }
-  KOKKOS_INLINE_FUNCTION laws::Numbers<Real> kept_of(int f) const {
+  KOKKOS_INLINE_FUNCTION Numbers<Real> kept_of(int f) const {
     if (kept.extent(1) == 0) return {};
     return {&kept(f, 0), static_cast<long>(kept.stride(1))};
   }
-  KOKKOS_INLINE_FUNCTION laws::History history(int f) const {
+  KOKKOS_INLINE_FUNCTION History history(int f) const {
     const auto numbers = kept_of(f);
     return {numbers.first, numbers.stride};
   }
 
   /// Computes R and returns the contact state.
-  KOKKOS_FUNCTION laws::ContactState residual(int f, const Real (&w)[dim], const Real (&lambda)[dim],
-                                              Real (&R)[dim]) const;
+  KOKKOS_FUNCTION ContactState residual(int f, const Real (&w)[dim], const Real (&lambda)[dim], Real (&R)[dim]) const;
   /// Computes the derivatives of R in w, then in lambda. Sliding and open faces have additional springs of damping
   /// times c_t, c_n. They appear in the derivatives only.
   KOKKOS_FUNCTION void jacobian(int f, const Real (&w)[dim], const Real (&lambda)[dim], Real (&dR)[dim][2 * dim]) const;
@@ -88,17 +87,16 @@ struct JointPoints {
   KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
                                       T (&borne)[dim]) const;
   template <class T>
-  KOKKOS_INLINE_FUNCTION laws::ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim],
-                                                     T (&R)[dim]) const;
+  KOKKOS_INLINE_FUNCTION ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim], T (&R)[dim]) const;
   template <class T>
-  KOKKOS_INLINE_FUNCTION void damp(int f, laws::ContactState state, T (&R)[dim]) const;
+  KOKKOS_INLINE_FUNCTION void damp(int f, ContactState state, T (&R)[dim]) const;
   template <class T>
   KOKKOS_INLINE_FUNCTION T dissipated(int f, const T (&w)[dim], const T (&traction)[dim]) const;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::laws
 
 // Device code cannot call functions of other translation units, so the definitions are included.
 #if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
-#include "physics/mechanics/joint_points_laws.hpp"
+#include "laws/joint_points_laws.hpp"
 #endif

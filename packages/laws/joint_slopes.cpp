@@ -1,8 +1,8 @@
-#include "physics/mechanics/joint_slopes.hpp"
+#include "laws/joint_slopes.hpp"
 
 #include <Sacado.hpp>
 
-namespace sprekk::physics {
+namespace sprekk::laws {
 
 namespace {
 
@@ -10,8 +10,8 @@ using Fad1 = Sacado::Fad::SFad<Real, 1>;
 
 /// Copy of the contact state with derivatives set by `seed`.
 template <class Seed>
-laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& seed) {
-  laws::Contact<Fad1> with;
+Contact<Fad1> differentiated(const Contact<Real>& at, const Seed& seed) {
+  Contact<Fad1> with;
   with.dim = at.dim;
   with.lambda_n = at.lambda_n;
   with.shear = at.shear;
@@ -29,8 +29,8 @@ laws::Contact<Fad1> differentiated(const laws::Contact<Real>& at, const Seed& se
 }
 
 /// Seeds further slip in its direction; without slip along the plastic jump, or along the first tangent.
-void along_slip(laws::Contact<Fad1>& at) {
-  const Real jumps[2] = {at.plastic_jump[0].val(), at.plastic_jump[1].val()}, size = laws::norm(jumps);
+void along_slip(Contact<Fad1>& at) {
+  const Real jumps[2] = {at.plastic_jump[0].val(), at.plastic_jump[1].val()}, size = norm(jumps);
   Real direction[2] = {at.slip_direction[0].val(), at.slip_direction[1].val()};
   if (direction[0] == 0 && direction[1] == 0) {
     direction[0] = size > 0 ? jumps[0] / size : 1;
@@ -51,24 +51,22 @@ void along_slip(laws::Contact<Fad1>& at) {
 
 }  // namespace
 
-Real bound_slope(const laws::Joint& law, Real compression) {
-  laws::Contact<Fad1> at;
+Real bound_slope(const Joint& law, Real compression) {
+  Contact<Fad1> at;
   at.lambda_n = Fad1(1, 0, -compression);
   const Real zero = 0;
   at.history = {&zero, 0};
   return -law.bound(at).dx(0);
 }
 
-Real weakening(const laws::Joint& law, const laws::Contact<Real>& at) {
-  return -law.bound(differentiated(at, along_slip)).dx(0);
-}
+Real weakening(const Joint& law, const Contact<Real>& at) { return -law.bound(differentiated(at, along_slip)).dx(0); }
 
-Real compliance_slope(const laws::Joint& law, const laws::Contact<Real>& at) {
+Real compliance_slope(const Joint& law, const Contact<Real>& at) {
   return law.compliance(differentiated(at, [](auto& with) { with.lambda_n = Fad1(1, 0, with.lambda_n.val()); })).dx(0);
 }
 
-Real dilation_slope(const laws::Joint& law, const laws::Contact<Real>& at) {
+Real dilation_slope(const Joint& law, const Contact<Real>& at) {
   return law.normal_gap(differentiated(at, along_slip)).dx(0);
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::laws
