@@ -2,11 +2,11 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
+#include "assembly/divergence.hpp"
 #include "assembly/geometry.hpp"
+#include "assembly/volume_work.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
-#include "physics/mechanics/coupling_volumes.hpp"
-#include "physics/mechanics/volume_work.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,22 +50,22 @@ class ThermalStress final : public assembly::Module, public assembly::Loads {
     }
     const auto load = [&](Loop loop, const char* displacement, const View<Real**>& volume,
                           const std::vector<Real>& start) {
-      terms_.push_back(make_volume_load(context,
-                                        {loop, context.field(displacement), temperature_, volume,
-                                         assembly::to_device(start, "temperature at the start")},
-                                        false));
+      terms_.push_back(assembly::make_volume_load(context,
+                                                  {loop, context.field(displacement), temperature_, volume,
+                                                   assembly::to_device(start, "temperature at the start")},
+                                                  false));
     };
-    load(Loop::cells, "displacement", cell_volumes(*mesh_, stiffness), reference);
+    load(Loop::cells, "displacement", assembly::cell_divergence(*mesh_, stiffness), reference);
     if (fractures_) {
       std::vector<Real> of_side;
       for (const auto& [f, side] : assembly::fracture_sides(*mesh_))
         of_side.push_back(reference[mesh_->fracture_faces[f].cell[side]]);
-      load(Loop::fracture_sides, "side bubble", bubble_volumes(*mesh_, stiffness), of_side);
+      load(Loop::fracture_sides, "side bubble", assembly::bubble_divergence(*mesh_, stiffness), of_side);
     }
     if (tips_) {
       std::vector<Real> of_cell;
       for (const LocalIndex cell : assembly::tip_cells(*mesh_)) of_cell.push_back(reference[cell]);
-      load(Loop::tip_cells, "tip displacement", tip_cell_volumes(*mesh_, stiffness), of_cell);
+      load(Loop::tip_cells, "tip displacement", assembly::tip_divergence(*mesh_, stiffness), of_cell);
     }
     reference_ = std::move(reference);
     find_sizes();

@@ -1,12 +1,12 @@
 #include "physics/mechanics/solid_pressure.hpp"
 
 #include "assembly/capabilities.hpp"
+#include "assembly/divergence.hpp"
 #include "assembly/geometry.hpp"
 #include "assembly/term.hpp"
+#include "assembly/volume_work.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-#include "physics/mechanics/coupling_volumes.hpp"
-#include "physics/mechanics/volume_work.hpp"
 
 #include <algorithm>
 #include <array>
@@ -116,11 +116,13 @@ class SolidPressure final : public assembly::Module, public assembly::RowWeights
     add<PressedCell>(context, Loop::cells, {p_}, pressed_cells());
     add<BubbleBetween>(context, Loop::neighbours, {p_}, bubbles_between());
     const auto work = [&](Loop loop, int block, const View<Real**>& volume) {
-      terms_.push_back(make_volume_work(context, {loop, block, p_, volume}, false, -1));  // rate -1: symmetric
+      terms_.push_back(
+          assembly::make_volume_work(context, {loop, block, p_, volume}, false, -1));  // rate -1: symmetric
     };
-    work(Loop::cells, u, cell_volumes(*mesh_, pressed));
-    if (fractures_) work(Loop::fracture_sides, context.field("side bubble"), bubble_volumes(*mesh_, pressed));
-    if (tips_) work(Loop::tip_cells, context.field("tip displacement"), tip_cell_volumes(*mesh_, pressed));
+    work(Loop::cells, u, assembly::cell_divergence(*mesh_, pressed));
+    if (fractures_)
+      work(Loop::fracture_sides, context.field("side bubble"), assembly::bubble_divergence(*mesh_, pressed));
+    if (tips_) work(Loop::tip_cells, context.field("tip displacement"), assembly::tip_divergence(*mesh_, pressed));
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {

@@ -2,9 +2,9 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
+#include "assembly/divergence.hpp"
 #include "base/check.hpp"
 #include "fields/properties.hpp"
-#include "physics/mechanics/coupling_volumes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,17 +120,19 @@ class Given final : public GivenPressure, public assembly::Loads {
     mesh::for_shape(mesh_->shape, [&](auto shape) {
       using Nodes = Slot<mesh::n_nodes(shape()), mesh::dimension(shape())>;
       using Bubble = Slot<1, mesh::dimension(shape())>;
-      add<Push<Nodes>>(true, context, Loop::cells, {u}, cell_volumes(*mesh_, biot), cells);
+      add<Push<Nodes>>(true, context, Loop::cells, {u}, assembly::cell_divergence(*mesh_, biot), cells);
       if (fractures_) {
         const int beta = context.field("side bubble");
-        add<Push<Bubble>>(true, context, Loop::fracture_sides, {beta}, bubble_volumes(*mesh_, biot), cells_of_sides);
-        add<Push<Nodes, Bubble>>(false, context, Loop::fracture_sides, {u, beta}, side_volumes(*mesh_), faces);
+        add<Push<Bubble>>(true, context, Loop::fracture_sides, {beta}, assembly::bubble_divergence(*mesh_, biot),
+                          cells_of_sides);
+        add<Push<Nodes, Bubble>>(false, context, Loop::fracture_sides, {u, beta}, assembly::side_volumes(*mesh_),
+                                 faces);
       }
       if (tips_) {
         const int q = context.field("tip displacement");
-        add<Push<Nodes>>(true, context, Loop::tip_cells, {q}, tip_cell_volumes(*mesh_, biot),
+        add<Push<Nodes>>(true, context, Loop::tip_cells, {q}, assembly::tip_divergence(*mesh_, biot),
                          assembly::tip_cells(*mesh_));
-        add<Push<Nodes>>(false, context, Loop::tip_sides, {q}, tip_side_volumes(*mesh_), faces_of_tips);
+        add<Push<Nodes>>(false, context, Loop::tip_sides, {q}, assembly::tip_side_volumes(*mesh_), faces_of_tips);
       }
     });
     set(std::vector<Real>(mesh_->n_cells(), 0), std::vector<Real>(mesh_->n_fracture_faces(), 0));

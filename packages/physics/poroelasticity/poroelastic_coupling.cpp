@@ -1,12 +1,12 @@
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 
 #include "assembly/capabilities.hpp"
+#include "assembly/divergence.hpp"
 #include "assembly/geometry.hpp"
 #include "assembly/term.hpp"
+#include "assembly/volume_work.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
-#include "physics/mechanics/coupling_volumes.hpp"
-#include "physics/mechanics/volume_work.hpp"
 #include "transport/hybrid_diffusion.hpp"
 
 #include <algorithm>
@@ -197,13 +197,13 @@ void PoroelasticCoupling::add_cells(const assembly::Context& context) {
     if (c < mesh_->n_owned_cells) schur.push_back(parameters_.stabilisation.softness[c] * volume);
   }
   schur_ = assembly::to_device(schur, "schur");
-  const auto volume = cell_volumes(*mesh_, [&](LocalIndex cell) { return biot(cell); });
+  const auto volume = assembly::cell_divergence(*mesh_, [&](LocalIndex cell) { return biot(cell); });
   add_work(context, Loop::cells, "displacement", volume, reference);
 }
 
 void PoroelasticCoupling::add_work(const assembly::Context& context, Loop loop, const char* displacement,
                                    const View<Real**>& volume, const std::vector<Real>& reference) {
-  rates_.push_back(make_volume_work(
+  rates_.push_back(assembly::make_volume_work(
       context,
       {loop, context.field(displacement), pressures_[0], volume, assembly::to_device(reference, "initial pressure")},
       true));
@@ -230,11 +230,11 @@ void PoroelasticCoupling::add_sides(const assembly::Context& context) {
     reference.push_back(mean_initial(mesh_->fracture_faces[f].cell[side]));
     halves.push_back(mesh_->fracture_faces[f].area / 2);
   }
-  const auto volume = bubble_volumes(*mesh_, [&](LocalIndex cell) { return biot(cell); });
+  const auto volume = assembly::bubble_divergence(*mesh_, [&](LocalIndex cell) { return biot(cell); });
   add_work(context, Loop::fracture_sides, "side bubble", volume, reference);
   openings_.push_back(mesh::for_shape(mesh_->shape, [&](auto shape) {
     constexpr int dim = mesh::dimension(shape());
-    const Opening<Slot<mesh::n_nodes(shape()), dim>, Slot<1, dim>> op{side_volumes(*mesh_),
+    const Opening<Slot<mesh::n_nodes(shape()), dim>, Slot<1, dim>> op{assembly::side_volumes(*mesh_),
                                                                       assembly::to_device(halves, "half of the area")};
     return assembly::Term(context, Loop::fracture_sides, {u, beta, b}, {u, beta, pressures_[1], b}, true,
                           [op](const assembly::State&) { return op; });
@@ -245,9 +245,9 @@ void PoroelasticCoupling::add_tips(const assembly::Context& context) {
   const int q = context.field("tip displacement"), b = context.field("widening");
   std::vector<Real> reference;
   for (const LocalIndex cell : assembly::tip_cells(*mesh_)) reference.push_back(mean_initial(cell));
-  const auto volume = tip_cell_volumes(*mesh_, [&](LocalIndex cell) { return biot(cell); });
+  const auto volume = assembly::tip_divergence(*mesh_, [&](LocalIndex cell) { return biot(cell); });
   add_work(context, Loop::tip_cells, "tip displacement", volume, reference);
-  const auto of_sides = tip_side_volumes(*mesh_);
+  const auto of_sides = assembly::tip_side_volumes(*mesh_);
   const auto part = assembly::to_device(std::vector<Real>(of_sides.extent(0), 0), "none of the area");
   openings_.push_back(mesh::for_corners(mesh_->shape, [&](auto shape) {
     const Opening<Slot<mesh::n_nodes(shape()), mesh::dimension(shape())>> op{of_sides, part};

@@ -1,21 +1,18 @@
-#include "physics/mechanics/volume_work.hpp"
+#include "assembly/volume_work.hpp"
 
-namespace sprekk::physics {
-
-using assembly::Slot;
-using assembly::Slots;
+namespace sprekk::assembly {
 
 namespace {
 
 /// | symbol    | shape                | unit  |                                                |
-/// | x         | displacements [m], p | m, Pa | unknowns                                       |
+/// | x         | vectors [m], p       | m, Pa | unknowns                                       |
 /// | r         | forces [m], dV/dt    | N, m^3/s (2D: m^2/s) | -(p - p_0) dV/du, rate V        |
 /// | volume    | [entity, m]          | m^2   | dV/du                                          |
 /// | reference | [entity]             | Pa    | p_0; empty: zero                               |
-/// | rate      |                      | 1/s   | of assembly::State, or a constant              |
-template <class Displacements>
+/// | rate      |                      | 1/s   | of State, or a constant              |
+template <class Vectors>
 struct VolumeWork {
-  using Columns = Slots<Displacements, Slot<1, 1>>;
+  using Columns = Slots<Vectors, Slot<1, 1>>;
   using Rows = Columns;
   static constexpr int m = Columns::size - 1;
   static constexpr bool couples(int row, int column) { return row != column; }
@@ -46,10 +43,10 @@ struct VolumeWork {
 /// | r         | [m]         | N    | -(p - p_0) dV/du       |
 /// | volume    | [entity, m] | m^2  | dV/du                  |
 /// | reference | [entity]    | Pa   | p_0; empty: zero       |
-template <class Displacements>
+template <class Vectors>
 struct VolumeLoad {
   using Columns = Slots<Slot<1, 1>>;
-  using Rows = Slots<Displacements>;
+  using Rows = Slots<Vectors>;
   static constexpr int m = Rows::size;
   View<Real**> volume;
   ConstView<Real*> reference;
@@ -63,9 +60,9 @@ struct VolumeLoad {
   }
 };
 
-/// Calls use(slot) with the slot of the displacements of an entity: the nodes of a cell, or the bubble of a side.
+/// Calls use(slot) with the slot of the vectors of an entity: the nodes of a cell, or the bubble of a side.
 template <class Use>
-assembly::Term with_slot(const assembly::Context& context, int block, const Use& use) {
+Term with_slot(const Context& context, int block, const Use& use) {
   const auto shape = context.mesh()->shape;
   if (context.layout(block).field().entity == fields::Entity::fracture_face)
     return mesh::dimension(shape) == 2 ? use(Slot<1, 2>()) : use(Slot<1, 3>());
@@ -74,11 +71,10 @@ assembly::Term with_slot(const assembly::Context& context, int block, const Use&
 
 }  // namespace
 
-assembly::Term make_volume_work(const assembly::Context& context, const VolumeCoupling& of, bool keep,
-                                std::optional<Real> rate) {
+Term make_volume_work(const Context& context, const VolumeCoupling& of, bool keep, std::optional<Real> rate) {
   return with_slot(context, of.u, [&](auto slot) {
     const VolumeWork<decltype(slot)> op{of.volume, of.reference, 0};
-    return assembly::Term(context, of.loop, {of.u, of.p}, {of.u, of.p}, keep, [op, rate](const assembly::State& state) {
+    return Term(context, of.loop, {of.u, of.p}, {of.u, of.p}, keep, [op, rate](const State& state) {
       auto at = op;
       at.rate = rate.value_or(state.rate);
       return at;
@@ -86,11 +82,11 @@ assembly::Term make_volume_work(const assembly::Context& context, const VolumeCo
   });
 }
 
-assembly::Term make_volume_load(const assembly::Context& context, const VolumeCoupling& of, bool keep) {
+Term make_volume_load(const Context& context, const VolumeCoupling& of, bool keep) {
   return with_slot(context, of.u, [&](auto slot) {
     const VolumeLoad<decltype(slot)> op{of.volume, of.reference};
-    return assembly::Term(context, of.loop, {of.u}, {of.p}, keep, [op](const assembly::State&) { return op; });
+    return Term(context, of.loop, {of.u}, {of.p}, keep, [op](const State&) { return op; });
   });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::assembly

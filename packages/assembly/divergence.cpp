@@ -1,4 +1,4 @@
-#include "physics/mechanics/coupling_volumes.hpp"
+#include "assembly/divergence.hpp"
 
 #include "assembly/geometry.hpp"
 #include "assembly/loop.hpp"
@@ -7,24 +7,24 @@
 
 #include <memory>
 
-namespace sprekk::physics {
+namespace sprekk::assembly {
 
 namespace {
 
-template <mesh::Shape shape>
-View<Real**> cell_volumes_of(const mesh::Mesh& mesh, const OfCell& biot) {
+template <Shape shape>
+View<Real**> cell_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   const View<Real**> volume("volume", mesh.n_cells(), n * dim);
   const auto host = Kokkos::create_mirror_view(volume);
   Real X[n][dim], dN[n][dim], g[dim];
   for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
-    assembly::gather_host<shape>(mesh, c, X);
-    assembly::for_each_cell_point<shape>(mesh, c, [&](const Real(&xi)[dim], Real part, const auto&) {
-      assembly::ReferenceCell<shape>::gradients(xi, dN);
-      const assembly::CellPoint<shape> point(X, dN);
+    gather_host<shape>(mesh, c, X);
+    for_each_cell_point<shape>(mesh, c, [&](const Real(&xi)[dim], Real part, const auto&) {
+      ReferenceCell<shape>::gradients(xi, dN);
+      const CellPoint<shape> point(X, dN);
       for (int a = 0; a < n; ++a) {
         point.gradient(dN[a], g);
-        for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * biot(c) * g[i];
+        for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * factor(c) * g[i];
       }
     });
   }
@@ -32,55 +32,54 @@ View<Real**> cell_volumes_of(const mesh::Mesh& mesh, const OfCell& biot) {
   return volume;
 }
 
-template <mesh::Shape shape>
-View<Real**> bubble_volumes_of(const mesh::Mesh& mesh, const OfCell& biot) {
+template <Shape shape>
+View<Real**> bubble_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  using Cell = assembly::ReferenceCell<shape>;
-  const auto sides = assembly::fracture_sides(mesh);
+  using Cell = ReferenceCell<shape>;
+  const auto sides = fracture_sides(mesh);
   const View<Real**> volume("volume", sides.size(), dim);
   const auto host = Kokkos::create_mirror_view(volume);
   Real X[n][dim], dN[n][dim], db[dim], g[dim];
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const auto& face = mesh.fracture_faces[sides[s][0]];
     const LocalIndex cell = face.cell[sides[s][1]];
-    assembly::gather_host<shape>(mesh, cell, X);
-    assembly::for_each_cell_point<shape>(mesh, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
+    gather_host<shape>(mesh, cell, X);
+    for_each_cell_point<shape>(mesh, cell, [&](const Real(&xi)[dim], Real part, const auto&) {
       Cell::gradients(xi, dN);
       Cell::bubble(face.local_face[sides[s][1]], xi, db);
-      assembly::CellPoint<shape>(X, dN).gradient(db, g);
-      for (int i = 0; i < dim; ++i) host(s, i) += part * biot(cell) * g[i];
+      CellPoint<shape>(X, dN).gradient(db, g);
+      for (int i = 0; i < dim; ++i) host(s, i) += part * factor(cell) * g[i];
     });
   }
   Kokkos::deep_copy(volume, host);
   return volume;
 }
 
-template <mesh::Shape shape>
-View<Real**> tip_cell_volumes_of(const mesh::Mesh& mesh, const OfCell& biot) {
+template <Shape shape>
+View<Real**> tip_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  const auto cells = assembly::tip_cells(mesh);
+  const auto cells = tip_cells(mesh);
   const View<Real**> volume("volume", cells.size(), n * dim);
   const auto host = Kokkos::create_mirror_view(volume);
-  const auto rules = std::make_shared<assembly::TipRules>();
+  const auto rules = std::make_shared<TipRules>();
   for (std::size_t c = 0; c < cells.size(); ++c)
-    assembly::TipCell<shape>(mesh, cells[c], rules)
-        .for_each_point([&](const auto&, Real part, const auto&, const auto& v) {
-          for (int a = 0; a < n; ++a)
-            for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * biot(cells[c]) * v.grad_psi[a][i];
-        });
+    TipCell<shape>(mesh, cells[c], rules).for_each_point([&](const auto&, Real part, const auto&, const auto& v) {
+      for (int a = 0; a < n; ++a)
+        for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * factor(cells[c]) * v.grad_psi[a][i];
+    });
   Kokkos::deep_copy(volume, host);
   return volume;
 }
 
-template <mesh::Shape shape>
+template <Shape shape>
 View<Real**> tip_side_volumes_of(const mesh::Mesh& mesh) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  const auto all = assembly::fracture_sides(mesh);
-  const auto selected = assembly::tip_sides(mesh);
+  const auto all = fracture_sides(mesh);
+  const auto selected = tip_sides(mesh);
   const View<Real**> volume("volume", selected.size(), n * dim);
   const auto host = Kokkos::create_mirror_view(volume);
-  using Tip = assembly::TipCell<shape>;
-  const auto rules = std::make_shared<assembly::TipRules>();
+  using Tip = TipCell<shape>;
+  const auto rules = std::make_shared<TipRules>();
   for (std::size_t s = 0; s < selected.size(); ++s) {
     const auto [f, side] = all[selected[s]];
     const auto& face = mesh.fracture_faces[f];
@@ -96,17 +95,17 @@ View<Real**> tip_side_volumes_of(const mesh::Mesh& mesh) {
 
 }  // namespace
 
-View<Real**> cell_volumes(const mesh::Mesh& mesh, const OfCell& biot) {
-  return mesh::for_shape(mesh.shape, [&](auto shape) { return cell_volumes_of<shape()>(mesh, biot); });
+View<Real**> cell_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
+  return mesh::for_shape(mesh.shape, [&](auto shape) { return cell_divergence_of<shape()>(mesh, factor); });
 }
 
-View<Real**> bubble_volumes(const mesh::Mesh& mesh, const OfCell& biot) {
-  return mesh::for_shape(mesh.shape, [&](auto shape) { return bubble_volumes_of<shape()>(mesh, biot); });
+View<Real**> bubble_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
+  return mesh::for_shape(mesh.shape, [&](auto shape) { return bubble_divergence_of<shape()>(mesh, factor); });
 }
 
 View<Real**> side_volumes(const mesh::Mesh& mesh) {
   const int dim = mesh.dim(), n = mesh.nodes_per_cell();
-  const auto sides = assembly::fracture_sides(mesh);
+  const auto sides = fracture_sides(mesh);
   const View<Real**> volume("volume", sides.size(), n * dim + dim);
   const auto host = Kokkos::create_mirror_view(volume);
   for (std::size_t s = 0; s < sides.size(); ++s) {
@@ -115,8 +114,8 @@ View<Real**> side_volumes(const mesh::Mesh& mesh) {
     const LocalIndex cell = face.cell[side];
     const int local_face = face.local_face[side];
     const Real area = side == mesh::plus ? face.area : -face.area;
-    const auto shares = assembly::mean_shares(mesh, cell, local_face);
-    const Real mean = assembly::bubble_mean(mesh, cell, local_face);
+    const auto shares = mean_shares(mesh, cell, local_face);
+    const Real mean = bubble_mean(mesh, cell, local_face);
     for (int i = 0; i < dim; ++i) {
       for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k)
         host(s, mesh::face_nodes(mesh.shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
@@ -127,12 +126,12 @@ View<Real**> side_volumes(const mesh::Mesh& mesh) {
   return volume;
 }
 
-View<Real**> tip_cell_volumes(const mesh::Mesh& mesh, const OfCell& biot) {
-  return mesh::for_corners(mesh.shape, [&](auto shape) { return tip_cell_volumes_of<shape()>(mesh, biot); });
+View<Real**> tip_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
+  return mesh::for_corners(mesh.shape, [&](auto shape) { return tip_divergence_of<shape()>(mesh, factor); });
 }
 
 View<Real**> tip_side_volumes(const mesh::Mesh& mesh) {
   return mesh::for_corners(mesh.shape, [&](auto shape) { return tip_side_volumes_of<shape()>(mesh); });
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::assembly
