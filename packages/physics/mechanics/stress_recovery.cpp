@@ -1,8 +1,9 @@
 #include "physics/mechanics/stress_recovery.hpp"
 
 #include "base/over_ranks.hpp"
+#include "estimate/recovery_patches.hpp"
 #include "physics/mechanics/bubble_stiffness.hpp"
-#include "physics/mechanics/recovery_patches.hpp"
+#include "physics/mechanics/tip_modes.hpp"
 
 #include <array>
 #include <cmath>
@@ -17,7 +18,7 @@ namespace {
 template <Shape shape>
 class Recovery final : public StressRecovery {
  public:
-  using Patches = RecoveryPatches<shape>;
+  using Patches = estimate::RecoveryPatches<shape, TipModes<mesh::dimension(shape), mesh::order(shape)>>;
   using Cell = typename Patches::Cell;
   using Tensor = typename Patches::Tensor;
   using Values = typename Patches::Values;
@@ -28,7 +29,7 @@ class Recovery final : public StressRecovery {
 
   Recovery(RCP<const mesh::Mesh> mesh, const ByField<const fields::Layout*>& layouts,
            fields::Properties<laws::Elasticity> elasticity)
-      : mesh_(mesh), layouts_(layouts), patches_(mesh, std::move(elasticity)) {
+      : mesh_(mesh), layouts_(layouts), elasticity_(std::move(elasticity)), patches_(mesh, {*mesh, elasticity_}) {
     if (layouts[bubble]) find_bubbles();
   }
 
@@ -82,6 +83,14 @@ class Recovery final : public StressRecovery {
     Real stiffness;  // alpha
   };
 
+  const laws::Elasticity& law(LocalIndex cell) const { return elasticity_.of_cell(*mesh_, cell); }
+  Values stress_of(LocalIndex cell, const Values& strain) const {
+    return Tensor::isotropic(strain, 2 * law(cell).G, law(cell).lambda);
+  }
+  Values strain_of(LocalIndex cell, const Values& stress) const {
+    const auto [G, lambda] = law(cell);
+    return Tensor::isotropic(stress, 1 / (2 * G), -lambda / (2 * G * (dim * lambda + 2 * G)));
+  }
   LocalIndex unknown(LocalIndex cell, int a) const { return mesh_->free_node(patches_.node(cell, a)) * dim; }
   LocalIndex tip_unknown(LocalIndex cell, int a) const { return mesh_->enriched[patches_.node(cell, a)] * dim; }
   /// Adds the strain of field values times a function with gradient g.
@@ -99,7 +108,7 @@ class Recovery final : public StressRecovery {
       add_strain(u[nodal], unknown(cell, a), point.g[a], strain);
       if (point.enriched && tip_unknown(cell, a) >= 0) add_strain(u[tip], tip_unknown(cell, a), point.g_tip[a], strain);
     }
-    return Tensor::stress(patches_.law(cell), strain);
+    return stress_of(cell, strain);
   }
   Values bubble_strain(LocalIndex cell, const Point& point, const Displacement& u) const {
     Values strain{};
@@ -168,7 +177,7 @@ class Recovery final : public StressRecovery {
       const auto& face = mesh_->fracture_faces[f];
       const LocalIndex cell = face.cell[side];
       bubbles_[cell].push_back({face.local_face[side], (f * 2 + side) * dim,
-                                bubble_stiffness<shape>(*mesh_, cell, face.local_face[side], patches_.law(cell))});
+                                bubble_stiffness<shape>(*mesh_, cell, face.local_face[side], law(cell))});
     }
     for (auto& [cell, bubbles] : bubbles_)
       for (auto& b : bubbles) b.stiffness *= static_cast<Real>(bubbles.size());
@@ -185,7 +194,7 @@ class Recovery final : public StressRecovery {
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
       patches_.for_each_sample(c, [&](const Point& point) {
         Values s = stress(c, point, u);
-        const Values bulge = Tensor::stress(patches_.law(c), bubble_strain(c, point, u));
+        const Values bulge = stress_of(c, bubble_strain(c, point, u));
         for (int k = 0; k < Tensor::n; ++k) s[k] += bulge[k];
         patches_.for_each_patch(c, [&](int p) { patches_.functions(c, p, point).add(s, 1, result[p]); });
       });
@@ -211,16 +220,16 @@ class Recovery final : public StressRecovery {
           f[k].evaluate(fit[p], weight[k], recovered);
         }
       for (int k = 0; k < Tensor::n; ++k) difference[k] = recovered[k] - s[k];
-      square[0] += volume * Tensor::product(difference, Tensor::strain(patches_.law(c), difference));
-      square[1] += volume * Tensor::product(recovered, Tensor::strain(patches_.law(c), recovered));
+      square[0] += volume * Tensor::product(difference, strain_of(c, difference));
+      square[1] += volume * Tensor::product(recovered, strain_of(c, recovered));
       square[2] += volume;
       add_bubble_forces(c, point, difference, -volume, to);
       const Values bulge = bubble_strain(c, point, u);
-      Values strain = Tensor::strain(patches_.law(c), difference);
+      Values strain = strain_of(c, difference);
       for (int k = 0; k < Tensor::n; ++k) strain[k] -= bulge[k];
       for (int k = 0; k < n_corners; ++k)
         if (const int p = patches_.patch(c, k); weight[k] > 0) f[k].add(strain, volume * weight[k], moments[p]);
-      add_forces(c, point, Tensor::stress(patches_.law(c), strain), -volume, to);
+      add_forces(c, point, stress_of(c, strain), -volume, to);
     });
   }
 
@@ -229,13 +238,14 @@ class Recovery final : public StressRecovery {
     patches_.for_each_sample(c, [&](const Point& point) {
       Values strain{};
       patches_.for_each_patch(c, [&](int p) { patches_.functions(c, p, point).evaluate(moments[p], 1, strain); });
-      add_forces(c, point, Tensor::stress(patches_.law(c), strain), 1, to);
-      add_bubble_forces(c, point, Tensor::stress(patches_.law(c), strain), 1, to);
+      add_forces(c, point, stress_of(c, strain), 1, to);
+      add_bubble_forces(c, point, stress_of(c, strain), 1, to);
     });
   }
 
   RCP<const mesh::Mesh> mesh_;
   ByField<const fields::Layout*> layouts_;
+  fields::Properties<laws::Elasticity> elasticity_;
   Patches patches_;
   std::unordered_map<LocalIndex, std::vector<Bubble>> bubbles_;  // of local cells
 };

@@ -1,8 +1,10 @@
 // Stress around crack tips: singular crack modes.
 #pragma once
 
+#include "base/symmetric.hpp"
+#include "fields/properties.hpp"
+#include "laws/elasticity.hpp"
 #include "mesh/facets.hpp"
-#include "physics/mechanics/symmetric.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,9 +25,11 @@ template <int dim, int order>
 class TipModes {
  public:
   static constexpr int n = order * dim;
-  using Values = typename Symmetric<dim>::Values;
+  using Tensor = base::Symmetric<dim>;
+  using Values = typename Tensor::Values;
 
-  explicit TipModes(const mesh::Mesh& mesh) : mesh_(mesh) {
+  TipModes(const mesh::Mesh& mesh, const fields::Properties<laws::Elasticity>& elasticity)
+      : mesh_(mesh), elasticity_(elasticity) {
     if (mesh.tip.empty()) return;
     for (const auto& face : mesh.fracture_faces)
       for (std::size_t k = 0; k < face.nodes[0].size(); ++k)
@@ -37,8 +41,7 @@ class TipModes {
   /// that of the front edge of the cell at this tip. Without such an edge, it is the mean direction of the front edges
   /// around the tip. Other fronts do not count. None if no fracture is known to end there, e.g. at a node tied to a
   /// tip.
-  std::optional<std::array<Values, n>> at(LocalIndex cell, LocalIndex tip, const std::array<Real, dim>& x,
-                                          Real poisson) const {
+  std::optional<std::array<Values, n>> at(LocalIndex cell, LocalIndex tip, const std::array<Real, dim>& x) const {
     using namespace mesh;
     const auto found = frames_.find(tip);
     if (found == frames_.end()) return {};
@@ -57,7 +60,9 @@ class TipModes {
     ahead = (1 / norm(ahead)) * ahead;
     Vector from{};
     for (int i = 0; i < dim; ++i) from[i] = x[i] - mesh_.coordinates[tip * dim + i];
-    return turned({ahead, normal, along}, dot(from, ahead), dot(from, normal), poisson);
+    const auto& rock = elasticity_.of_cell(mesh_, cell);
+    return turned({ahead, normal, along}, dot(from, ahead), dot(from, normal),
+                  rock.lambda / (2 * (rock.lambda + rock.G)));
   }
 
  private:
@@ -123,14 +128,15 @@ class TipModes {
     }
     std::array<Values, n> modes{};
     for (int m = 0; m < n; ++m)
-      for (int c = 0; c < Symmetric<dim>::n; ++c)
+      for (int c = 0; c < Tensor::n; ++c)
         for (int k = 0; k < dim; ++k)
           for (int l = 0; l < dim; ++l)
-            modes[m][c] += axes[k][Symmetric<dim>::row(c)] * local[m][k][l] * axes[l][Symmetric<dim>::column(c)];
+            modes[m][c] += axes[k][Tensor::row(c)] * local[m][k][l] * axes[l][Tensor::column(c)];
     return modes;
   }
 
   const mesh::Mesh& mesh_;
+  const fields::Properties<laws::Elasticity>& elasticity_;
   std::unordered_map<LocalIndex, Frame> frames_;
 };
 

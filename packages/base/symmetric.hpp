@@ -1,11 +1,11 @@
-// Symmetric tensors and Hooke's law for them.
+// Symmetric tensors.
 #pragma once
 
-#include "laws/elasticity.hpp"
+#include "base/types.hpp"
 
 #include <array>
 
-namespace sprekk::physics {
+namespace sprekk::base {
 
 /// Symmetric tensors stored by their components XX, YY[, ZZ], XY[, YZ, XZ].
 template <int dim>
@@ -20,16 +20,8 @@ struct Symmetric {
     for (int k = 0; k < n; ++k) sum += (k < dim ? 1 : 2) * a[k] * b[k];
     return sum;
   }
-  static Values stress(const laws::Elasticity& law, const Values& strain) {
-    return scaled(strain, 2 * law.G, law.lambda);
-  }
-  static Values strain(const laws::Elasticity& law, const Values& stress) {
-    return scaled(stress, 1 / (2 * law.G), -law.lambda / (2 * law.G * (dim * law.lambda + 2 * law.G)));
-  }
-
- private:
   /// Returns a v + b tr(v) I.
-  static Values scaled(const Values& v, Real a, Real b) {
+  static Values isotropic(const Values& v, Real a, Real b) {
     Real trace = 0;
     for (int i = 0; i < dim; ++i) trace += v[i];
     Values result;
@@ -38,4 +30,4 @@ struct Symmetric {
   }
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::base

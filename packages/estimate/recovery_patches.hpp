@@ -1,9 +1,10 @@
-// Patches of cells around nodes, and the recovery of stress from samples on them.
+// Patches of cells around nodes, and the recovery of symmetric tensors from samples on them.
 #pragma once
 
 #include "assembly/loop.hpp"
 #include "assembly/tip_cell.hpp"
-#include "physics/mechanics/tip_modes.hpp"
+#include "base/check.hpp"
+#include "base/symmetric.hpp"
 
 #include <Teuchos_LAPACK.hpp>
 
@@ -13,11 +14,11 @@
 #include <unordered_map>
 #include <vector>
 
-namespace sprekk::physics {
+namespace sprekk::estimate {
 
-/// Sample points of a cell, at or near the points of highest stress accuracy. Order 1: the centre. Order 2: two points
-/// per direction, or the edge midpoints of simplices. Cells with a tip: two points per direction, or dim + 1 interior
-/// points of simplices.
+/// Sample points of a cell, at or near the points of highest accuracy of gradients. Order 1: the centre. Order 2: two
+/// points per direction, or the edge midpoints of simplices. Cells with a tip: two points per direction, or dim + 1
+/// interior points of simplices.
 template <mesh::Shape shape>
 struct SamplePoints {
   static constexpr int dim = mesh::dimension(shape);
@@ -44,20 +45,21 @@ struct SamplePoints {
 };
 
 /// Patches and their functions. A patch consists of the cells of one region that share a corner node. Cells with a tip
-/// belong only to the patches of their tips (mesh::Mesh::tip). The functions are polynomials of the order of the
-/// displacement for all components. At tips they are linear functions and crack modes (TipModes). The coefficients are
-/// fitted to samples by least squares.
-template <mesh::Shape shape>
+/// belong only to the patches of their tips (mesh::Mesh::tip). The functions are polynomials of the order of
+/// the cells for all components. At tips they are linear functions and crack modes. The coefficients are fitted to
+/// samples by least squares. `TipModes`: `n`, the number of crack modes, and `at(cell, tip, x)`, an optional array of
+/// their values around the tip `tip` at the point x of a local cell.
+template <mesh::Shape shape, class TipModes>
 class RecoveryPatches {
  public:
   static constexpr int dim = mesh::dimension(shape), order = mesh::order(shape);
   static constexpr int n_nodes = mesh::n_nodes(shape), n_corners = mesh::n_corners(shape);
   static constexpr int n_linear = dim + 1, n_terms = order == 1 ? n_linear : n_linear + dim * (dim + 1) / 2;
-  static constexpr int n_modes = TipModes<dim, order>::n;
+  static constexpr int n_modes = TipModes::n;
   using Cell = assembly::ReferenceCell<shape>;
   using Corners = assembly::ReferenceCell<mesh::linear(shape)>;
   using Tip = assembly::TipCell<mesh::linear(shape)>;
-  using Tensor = Symmetric<dim>;
+  using Tensor = base::Symmetric<dim>;
   using Values = typename Tensor::Values;
   using Terms = std::array<Real, n_terms>;
   using Polynomial = std::array<Terms, Tensor::n>;
@@ -136,8 +138,7 @@ class RecoveryPatches {
   };
 
   /// Builds the patches. Throws an Error if a fit is singular. Collective.
-  RecoveryPatches(RCP<const mesh::Mesh> mesh, fields::Properties<laws::Elasticity> elasticity)
-      : mesh_(mesh), elasticity_(std::move(elasticity)), tip_modes_(*mesh) {
+  RecoveryPatches(RCP<const mesh::Mesh> mesh, TipModes tip_modes) : mesh_(mesh), tip_modes_(std::move(tip_modes)) {
     if constexpr (order == 1)
       for (const LocalIndex cell : assembly::tip_cells(*mesh)) tip_cells_.emplace(cell, Tip(*mesh, cell));
     find_patches();
@@ -151,7 +152,6 @@ class RecoveryPatches {
     const auto found = tip_cells_.find(cell);
     return found == tip_cells_.end() ? nullptr : &found->second;
   }
-  const laws::Elasticity& law(LocalIndex cell) const { return elasticity_.of_cell(*mesh_, cell); }
   LocalIndex node(LocalIndex cell, int a) const { return mesh_->cells[cell * n_nodes + a]; }
   /// Patch around a corner of a local cell; -1: no owned cell needs it, or the cell has a tip elsewhere.
   int patch(LocalIndex cell, int corner) const { return patch_of_corner_[cell * n_corners + corner]; }
@@ -194,7 +194,7 @@ class RecoveryPatches {
     const auto& tip = tips_[patches_[p].tip];
     if (tip.factor[0] == 0) return f;
     f.singular = true;
-    f.modes = *modes(cell, tip, point);
+    f.modes = *tip_modes_.at(cell, tip.node, point.x);
     for (int m = 0; m < n_modes; ++m) {
       f.evaluate(tip.fit[m], -1, f.modes[m]);
       for (int k = 0; k < Tensor::n; ++k) {
@@ -256,11 +256,6 @@ class RecoveryPatches {
     for (int k = n_linear; k < n_terms && patch.tip < 0; ++k)
       q[k] = q[1 + Tensor::row(k - n_linear)] * q[1 + Tensor::column(k - n_linear)];
     return q;
-  }
-
-  std::optional<Modes> modes(LocalIndex cell, const TipPatch& tip, const Point& point) const {
-    const auto& rock = law(cell);
-    return tip_modes_.at(cell, tip.node, point.x, rock.lambda / (2 * (rock.lambda + rock.G)));
   }
 
   /// Calls visit(cell, point, patch) for all samples of all patches.
@@ -335,9 +330,8 @@ class RecoveryPatches {
       for (int r = order == 1 ? 1 : n_linear; r < n_terms; ++r) patch.factor[r * n_terms + r] += regularisation;
     });
     for (auto& patch : patches_)
-      SPREKK_CHECK(cholesky<n_terms>(patch.factor),
-                   "stress recovery: the fit around the node at ({}, {}, ...) is singular", patch.centre[0],
-                   patch.centre[1]);
+      SPREKK_CHECK(cholesky<n_terms>(patch.factor), "recovery: the fit around the node at ({}, {}, ...) is singular",
+                   patch.centre[0], patch.centre[1]);
   }
 
   template <int n>
@@ -358,7 +352,8 @@ class RecoveryPatches {
         for_each([&](LocalIndex c, const Point& point, int p) {
           if (patches_[p].tip < 0) return;
           auto& tip = tips_[patches_[p].tip];
-          if (const auto raw = modes(c, tip, point)) visit(Functions{terms(patches_[p], point.x)}, *raw, tip);
+          if (const auto raw = tip_modes_.at(c, tip.node, point.x))
+            visit(Functions{terms(patches_[p], point.x)}, *raw, tip);
         });
     };
     for_each_mode([](const Functions& f, const Modes& raw, TipPatch& tip) {
@@ -379,12 +374,11 @@ class RecoveryPatches {
   }
 
   /// Regularisation per sample, in coordinates scaled by the patch size. For order 2 it is larger on tetrahedra,
-  /// because the quadratic terms follow the stress errors of these cells more closely.
+  /// because the quadratic terms follow the errors of the samples of these cells more closely.
   static constexpr Real regularisation = order == 1 ? 0.3 : shape == mesh::Shape::tetrahedron10 ? 0.06 : 0.01;
 
   RCP<const mesh::Mesh> mesh_;
-  fields::Properties<laws::Elasticity> elasticity_;
-  TipModes<dim, order> tip_modes_;
+  TipModes tip_modes_;
   std::unordered_map<LocalIndex, Tip> tip_cells_;  // local cells with tip functions
   std::vector<Patch> patches_;                     // around the corners of owned cells
   std::vector<TipPatch> tips_;
@@ -394,4 +388,4 @@ class RecoveryPatches {
   RCP<const fields::Import> import_;
 };
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::estimate
