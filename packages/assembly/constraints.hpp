@@ -47,16 +47,16 @@ struct Held {
 std::vector<Real> prescribed_values(const Held& held, const std::vector<DirichletCondition>& conditions, Real t,
                                     std::vector<std::string>& conflicts);
 
-/// Returns the conflicts at time t of conditions on the displacement, on a whole mesh. Not collective.
+/// Returns the conflicts at time t of conditions on a field, on a whole mesh. Not collective.
 std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions,
                                         Real t);
 
 /// Conditions on one field: the owned unknowns they prescribe, and the values.
 class Constraints {
  public:
-  /// Finds the prescribed unknowns. Boundary conditions apply to the nodes of boundary faces. If a value jumps where a
-  /// fracture ends on the boundary, each copy of the node has the value of its own side. `conditions` must be those on
-  /// this field.
+  /// Finds the prescribed unknowns. Boundary conditions apply to the nodes of boundary faces. If a value is
+  /// discontinuous where a fracture ends on the boundary, each copy of the node has the value of its own side.
+  /// `conditions` must be those on this field.
   Constraints(const mesh::Mesh& mesh, const fields::Layout& layout, std::vector<DirichletCondition> conditions);
 
   /// Evaluates all values at time t. Throws an Error with the names of both conditions if two prescribe different

@@ -76,7 +76,6 @@ class Gram {
 
   void add_held(const std::vector<DirichletCondition>& conditions) {
     for (const auto& condition : conditions) {
-      if (condition.field != "displacement") continue;
       for (const auto& face : mesh_.boundary_faces) {
         if (face.boundary != condition.boundary ||
             (condition.region >= 0 && mesh_.cell_region[face.cell] != condition.region))
@@ -173,7 +172,7 @@ std::string unheld(const GlobalMesh& mesh, const std::vector<DirichletCondition>
   const auto others = std::count(moves.begin(), moves.end(), 1) - 1;
   return fmt::format(
       "boundary conditions: nothing constrains the rock of {} around {} ({} cells of {}){}: it {}. Contact constrains "
-      "a block only against constrained blocks; prescribe the missing displacements, in at least one direction on a "
+      "a block only against constrained blocks; prescribe the missing components, in at least one direction on a "
       "boundary of the block, or connect its sides by \"periodic\"",
       base::quoted_list(regions), to_text(centre, mesh.dim(), mesh::norm(centre)), bodies.n_cells[body], mesh.n_cells(),
       others > 0 ? fmt::format(" and {} more bodies", others) : "", fmt::join(ways, "; it "));

@@ -12,7 +12,7 @@ namespace sprekk::assembly {
 
 using contact::FreeMotion;
 
-/// Returns a basis of the rigid motions that neither conditions on "displacement" nor ties prevent. A free motion is
+/// Returns a basis of the rigid motions that neither `conditions` on node vectors nor ties prevent. A free motion is
 /// zero in every prescribed component and equal at nodes with common unknowns. A body includes all rock joined by
 /// fractures, so contact cannot prevent these motions. A body without any support has six motions in 3D and three in
 /// 2D. A motion of several bodies is listed once for each of them. The result is empty if all bodies are supported. Not

@@ -8,7 +8,7 @@
 namespace sprekk::assembly {
 
 /// Returns the coefficients V of the layer volume, m^2 (m in 2D), [side of Loop::fracture_sides, node dim + dim + 1]. A
-/// layer of thickness h at zero displacement has the volume |f| (w_n + h) on a face f, with the mean normal jump w_n.
+/// layer of thickness h at u = 0 has the volume |f| (w_n + h) on a face f, with the mean w_n of n . (u+ - u-).
 /// The sum of V . (u [node of the side's cell, dim], beta [dim], h) over both sides of a face gives this volume. Each
 /// side contributes half of the thickness. Throws an Error if tips are enriched. Not collective.
 template <Shape shape>

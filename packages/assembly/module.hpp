@@ -68,7 +68,8 @@ struct Unknown {
   bool balance = false;
   /// Values may exceed their scale by orders of magnitude. Their round-off counts in the rows of other fields.
   bool unbounded = false;
-  /// For contact tractions: scale of the jumps in their rows. The rows contain jumps times contact::Grip::augmentation.
+  /// For contact forces on faces: scale of the differences of both sides in their rows. The rows contain these
+  /// differences times contact::Grip::augmentation.
   std::string augmented_by = "";
   Reactions reactions = {};
 };

@@ -34,8 +34,8 @@ Real one_sided(const base::Expression& g, const mesh::Vector& x, const mesh::Vec
   const Real step = std::max(1e-6, rounding), ratio = 100;
   const Real near = g(x + step * d, t), far = g(x + ratio * step * d, t);
   const Real change = std::abs(near - at);
-  const bool jumps = change > 0.5 * std::abs(far - at) && change > 1e-9 * std::max(std::abs(near), std::abs(at));
-  return jumps ? near + (near - far) / (ratio - 1) : at;
+  const bool breaks = change > 0.5 * std::abs(far - at) && change > 1e-9 * std::max(std::abs(near), std::abs(at));
+  return breaks ? near + (near - far) / (ratio - 1) : at;
 }
 
 }  // namespace sprekk::assembly

@@ -1,4 +1,4 @@
-// Displacement of order 1 as a subspace of order 2, for multigrid.
+// Node fields of order 1 as a subspace of order 2, for multigrid.
 #pragma once
 
 #include "fields/layout.hpp"

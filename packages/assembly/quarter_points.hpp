@@ -1,4 +1,4 @@
-// Quarter-point cells of order 2, whose displacement grows with the square root of the distance from crack tips.
+// Quarter-point cells of order 2, whose node fields grow with the square root of the distance from crack tips.
 #pragma once
 
 #include "mesh/mesh.hpp"

@@ -71,8 +71,8 @@ void RateErrors::begin(const fields::BlockVector& x) {
   for (const auto& kept : blocks_) Kokkos::deep_copy(kept.old, entries(*x[kept.block], kept.field.n_components));
 }
 
-void RateErrors::forget(bool jump) {
-  n_rates_ = jump ? -1 : 0;
+void RateErrors::forget(bool abrupt) {
+  n_rates_ = abrupt ? -1 : 0;
   for (auto& kept : blocks_) kept.lasts = kept.sum = 0;
 }
 

@@ -32,9 +32,9 @@ class RateErrors {
   /// Returns the errors of a step to x. `second_order`: the step was made by BDF2. The errors are unknown while earlier
   /// rates are missing. Changes below `least` [block] are treated as zero. Collective.
   fields::StepErrors of_step(const fields::BlockVector& x, Real dt, bool second_order, const std::vector<Real>& least);
-  /// Restarts the estimate where loads change their course. The persistence time starts again at zero. If `jump`, the
-  /// state may jump at the start of the first step, and the rate of this step is unknown.
-  void forget(bool jump);
+  /// Restarts the estimate where loads change their course. The persistence time starts again at zero. If `abrupt`, the
+  /// state may be discontinuous at the start of the first step, and the rate of this step is unknown.
+  void forget(bool abrupt);
 
   /// Returns the rates, [entity, component], with their names.
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const;

@@ -9,7 +9,7 @@
 
 namespace sprekk::assembly {
 
-/// Sum of the residuals of a field over the unknowns that a condition prescribes. For displacements: force of the
+/// Sum of the residuals of a field over the unknowns that a condition prescribes. For motions of bodies: force of the
 /// supports on the body.
 struct Reaction {
   std::string condition, field;

@@ -140,7 +140,7 @@ struct ReferenceCell {
 
   /// Returns the bubble b of a face and sets its reference gradient. On its face, b is 4 l1 l2 (edge), 27 l1 l2 l3
   /// (triangle) or the product of 1 - xi^2 (edge, quadrilateral). b vanishes on all other faces and lies outside the
-  /// displacement space:
+  /// space of the shape functions:
   ///   triangle 4 l1 l2, of order 2: 4 l1 l2 (1 - l3);  tetrahedron 27 l1 l2 l3;
   ///   else the product of 1 - xi^2 along the face times s (order 1) or s^3 (order 2), with s = 1 on the face and 0
   ///   opposite.
@@ -292,7 +292,7 @@ struct ReferenceCell {
 /// tetrahedra it collapses towards the tip corners (3D: at most two), which have quarter points on all their edges.
 /// There, stiffness integrands are smooth in the coordinates of the rule, in triangles polynomials; see
 /// move_to_quarter_points(). Hexahedra use the product rule. Rules on parts of a hexahedron would need 8 points for the
-/// divergence theorem, and thus for exact linear displacements.
+/// divergence theorem, and thus for exact linear fields.
 template <Shape shape, int n_1d = 6>
 class CurvedQuadrature {
  public:

@@ -9,9 +9,9 @@
 namespace sprekk::assembly {
 
 /// The residual of a row has a round-off of its diagonal times the round-off of the unknowns. Measures subtract it. It
-/// is relevant for slivers, which are stiff, and for nearly incompressible rock. Augmented rows contain jumps times the
-/// augmentation constant. Where soft rock carries stiff rock over a long distance, the round-off of the jumps exceeds
-/// the deformation of the stiff rock.
+/// is relevant for slivers, which are stiff, and for nearly incompressible rock. Augmented rows contain differences of
+/// both sides times the augmentation constant. Where soft rock carries stiff rock over a long distance, the round-off
+/// of the differences exceeds the deformation of the stiff rock.
 class RowSizes {
  public:
   /// Finds weights and diagonals for the linear part and the balances of a Jacobian. The arguments must outlive this

@@ -26,7 +26,7 @@ class StepAccuracy {
   /// the loads in a step so far. Collective.
   Real bend(const std::function<fields::BlockVector(Real)>& loads);
   /// Restarts the rate errors, see RateErrors::forget.
-  void forget(bool jump) { rate_errors_.forget(jump); }
+  void forget(bool abrupt) { rate_errors_.forget(abrupt); }
 
   std::vector<std::pair<fields::Field, View<Real**>>> histories() const { return rate_errors_.histories(); }
   /// Return and restore data for a checkpoint.

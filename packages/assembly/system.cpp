@@ -18,15 +18,15 @@ using fields::Measure;
 
 namespace {
 
-/// Returns the blocks of contact. Bodies that modules support in an unknown way have no displacement there.
+/// Returns the blocks of contact. Bodies that modules support in an unknown way have no motion there.
 contact::Blocks contact_blocks(const Structure& structure) {
   const bool held = std::any_of(structure.modules.begin(), structure.modules.end(),
                                 [](const auto& m) { return m.holds_bodies() && !m.supporting->supports(); });
   contact::Blocks found;
   for (int b = 0; b < structure.n_blocks(); ++b) {
     const auto& unknown = structure.unknowns[b];
-    if (!unknown.augmented_by.empty()) found.traction = b;
-    if (!held && unknown.near_null_space == NearNullSpace::rigid_motions) found.displacement = b;
+    if (!unknown.augmented_by.empty()) found.multiplier = b;
+    if (!held && unknown.near_null_space == NearNullSpace::rigid_motions) found.motion = b;
   }
   return found;
 }
@@ -51,10 +51,10 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
   watch_contact();
 }
 
-/// Returns the owned displacement unknowns that conditions and modules support.
-std::vector<contact::Support> System::supports_of(int displacement) const {
-  auto all = structure_.constraints[displacement].supports();
-  const auto n_owned = static_cast<LocalIndex>(base::n_local_elements(*structure_.layouts[displacement].owned()));
+/// Returns the owned unknowns of motion that conditions and modules support.
+std::vector<contact::Support> System::supports_of(int block) const {
+  auto all = structure_.constraints[block].supports();
+  const auto n_owned = static_cast<LocalIndex>(base::n_local_elements(*structure_.layouts[block].owned()));
   for (const auto& module : structure_.modules) {
     if (!module.supporting) continue;
     for (const auto& support : module.supporting->supports().value_or(std::vector<contact::Support>()))
@@ -65,26 +65,26 @@ std::vector<contact::Support> System::supports_of(int displacement) const {
 
 void System::watch_contact() {
   const auto mesh = structure_.mesh;
-  const int displacement = contact_blocks_.displacement;
+  const int motion = contact_blocks_.motion;
   std::unique_ptr<contact::LoosePieces> pieces;
-  if (displacement >= 0)
-    pieces = std::make_unique<contact::LoosePieces>(mesh, structure_.layouts[displacement], supports_of(displacement),
+  if (motion >= 0)
+    pieces = std::make_unique<contact::LoosePieces>(mesh, structure_.layouts[motion], supports_of(motion),
                                                     cell_volumes(*mesh));
   const bool loose = pieces && pieces->possible();
-  if (!loose && contact_blocks_.traction < 0) return;
-  if (loose) pieces->set_stiffness(row_sizes_->diagonal(displacement));
+  if (!loose && contact_blocks_.multiplier < 0) return;
+  if (loose) pieces->set_stiffness(row_sizes_->diagonal(motion));
   contact_ = std::make_unique<contact::Contact>(static_cast<contact::Equations&>(*this), mesh, contact_blocks_,
                                                 std::move(pieces));
   contact_->remember(initial());
   if (loose && contact_->pieces()->contrast() > 10 && linear_part_is_invariant())
-    contact_->remove_rigid_motions(structure_.layouts[displacement]);
+    contact_->remove_rigid_motions(structure_.layouts[motion]);
 }
 
 /// Returns whether the linear part is zero for rigid motions of pieces. Collective.
 bool System::linear_part_is_invariant() const {
-  fields::Vector motion(structure_.layouts[contact_blocks_.displacement].ghosted());
+  fields::Vector motion(structure_.layouts[contact_blocks_.motion].ghosted());
   for (int b = 0; b < structure_.n_blocks(); ++b) {
-    const auto& A = jacobian_.linear()(b, contact_blocks_.displacement);
+    const auto& A = jacobian_.linear()(b, contact_blocks_.motion);
     if (A.is_null()) continue;
     fields::Vector rows(structure_.blocks[b].map);
     for (int mode : contact::rigid_modes(structure_.mesh->dim())) {
@@ -209,7 +209,7 @@ void System::commit(const BlockVector& x) {
 
 std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
   const auto there = at(x);
-  if (contact_blocks_.traction >= 0) row_sizes_->set_augmentation(contact_blocks_.traction, grips_at(there));
+  if (contact_blocks_.multiplier >= 0) row_sizes_->set_augmentation(contact_blocks_.multiplier, grips_at(there));
   auto measures = row_sizes_->measures(x, r);
   for (const auto& module : structure_.modules) {
     if (!module.errors) continue;
@@ -247,15 +247,15 @@ std::vector<contact::Grip> System::evaluate(const BlockVector& x, BlockVector& r
 }
 
 contact::Sizes System::sizes() const {
-  const auto& [displacement, traction] = contact_blocks_;
+  const auto& [motion, multiplier] = contact_blocks_;
   contact::Sizes sizes{.extent = extent_};
-  if (displacement >= 0) {
-    sizes.displacement = blocks()[displacement].kinematic_scale;
-    sizes.force = blocks()[displacement].residual_scale;
+  if (motion >= 0) {
+    sizes.motion = blocks()[motion].kinematic_scale;
+    sizes.force = blocks()[motion].residual_scale;
   }
-  if (traction >= 0) {
-    sizes.traction = blocks()[traction].kinematic_scale;
-    sizes.jump = scaling_.of(structure_.unknowns[traction].augmented_by);
+  if (multiplier >= 0) {
+    sizes.multiplier = blocks()[multiplier].kinematic_scale;
+    sizes.gap = scaling_.of(structure_.unknowns[multiplier].augmented_by);
   }
   return sizes;
 }

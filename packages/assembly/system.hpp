@@ -99,7 +99,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// relative to the largest change of the loads in a step so far. Changes the present time. Collective.
   Real bend_of_loads(const fields::BlockVector& x, Real t, Real dt);
   /// Restarts the rate errors, see RateErrors::forget.
-  void forget_rates(bool jump) { accuracy_->forget(jump); }
+  void forget_rates(bool abrupt) { accuracy_->forget(abrupt); }
 
   /// Returns the contact constraints, [owned fracture face]. Collective.
   std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
@@ -130,7 +130,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void assemble(const BoundModule& module, const State& state, fields::BlockMatrix& J) const;
   fields::BlockVector loads(const fields::BlockVector& x, Real t, Real dt);
   void watch_contact();
-  std::vector<contact::Support> supports_of(int displacement) const;
+  std::vector<contact::Support> supports_of(int block) const;
   bool linear_part_is_invariant() const;
   std::vector<contact::Grip> grips_at(const State& state) const;
   std::vector<contact::Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) override;

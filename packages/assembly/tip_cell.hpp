@@ -1,4 +1,4 @@
-// Functions that enrich the displacement in cells at crack tips.
+// Functions that enrich a node field in cells at crack tips.
 #pragma once
 
 #include "assembly/geometry.hpp"
@@ -18,13 +18,13 @@ namespace sprekk::assembly {
 
 /// Enriching functions of a cell of order 1 at a crack tip, on the host. For a node c that is not a tip:
 ///   psi_c = N_c (rho^(-1/2) - 1),    rho = sum of N_c over all nodes that are not tips
-/// psi_c is continuous and vanishes at all nodes and where rho = 1. Displacements thus grow with the square root of the
+/// psi_c is continuous and vanishes at all nodes and where rho = 1. Fields thus grow with the square root of the
 /// distance from the tip. On a triangle, N and psi span the functions of a quarter-point triangle on its edges at the
 /// tip.
 ///
 /// The integrals of grad psi and grad (x psi) over a cell equal those of psi n and x psi n over its faces, to
 /// round-off. On simplices, the rules are exact. On other cells, a function linear in x corrects each gradient. Uniform
-/// stress, and linear stress balanced by body forces, are therefore in equilibrium.
+/// fluxes, and linear fluxes balanced by sources, are therefore in equilibrium.
 template <Shape shape>
 class TipCell {
  public:

@@ -10,8 +10,8 @@ namespace sprekk::contact {
 using fields::BlockVector;
 
 RCP<const fields::Vector> Contact::proximal(int block) const {
-  return block == blocks_.displacement && pieces_ && pieces_->any() ? Teuchos::rcpFromRef(pieces_->proximal())
-                                                                    : Teuchos::null;
+  return block == blocks_.motion && pieces_ && pieces_->any() ? Teuchos::rcpFromRef(pieces_->proximal())
+                                                              : Teuchos::null;
 }
 
 std::string Contact::loose() const {
@@ -42,7 +42,7 @@ constexpr Real least_force = 1e-12;
 std::vector<Real> Contact::work(const LoosePieces::Motion& motion, const BlockVector& x) {
   auto r = fields::create_like(x);
   const auto grips = equations_.evaluate(x, r);
-  return pieces_->work(motion, *r[blocks_.displacement], grips);
+  return pieces_->work(motion, *r[blocks_.motion], grips);
 }
 
 /// Replaces the share of free motions in a step. Without resistance, the proximal term alone limits the motion: the
@@ -51,8 +51,8 @@ std::vector<Real> Contact::work(const LoosePieces::Motion& motion, const BlockVe
 /// motion after another.
 std::string Contact::balance(const BlockVector& x, BlockVector& dx) {
   if (!pieces_ || !pieces_->any() || damped_everywhere_ > 0) return "";
-  const auto motion = pieces_->part_of(*dx[blocks_.displacement]);
-  pieces_->add(std::vector<Real>(pieces_->n_groups(), -1), motion, *dx[blocks_.displacement]);
+  const auto motion = pieces_->part_of(*dx[blocks_.motion]);
+  pieces_->add(std::vector<Real>(pieces_->n_groups(), -1), motion, *dx[blocks_.motion]);
   const auto unresisted = balance_along(motion, x, dx, false);
   for (int sweep = 0; sweep < n_sweeps && unresisted.empty(); ++sweep)
     for (int k = 0; k < pieces_->most_modes(); ++k) balance_along(pieces_->mode(k), x, dx, true);
@@ -62,19 +62,19 @@ std::string Contact::balance(const BlockVector& x, BlockVector& dx) {
 /// Evaluates residuals, which are inexpensive compared with the Newton steps saved. All groups share the evaluations.
 std::string Contact::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx,
                                    bool mode) {
-  auto& du = *dx[blocks_.displacement];
+  auto& du = *dx[blocks_.motion];
   const int n = pieces_->n_groups();
   auto y = fields::create_like(x);
   const auto at = [&](const std::vector<Real>& s) {
     for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1, *dx[b], 0);
-    pieces_->add(s, motion, *y[blocks_.displacement]);
+    pieces_->add(s, motion, *y[blocks_.motion]);
     return work(motion, y);
   };
   std::vector<Real> s(n, 0), sign(n, 1);
   const auto start = at(s);
   std::vector<ZeroSearch> searches;
   const auto sizes = equations_.sizes();
-  const Real length = sizes.displacement, force = sizes.force, reach = 4 * sizes.extent + 1e3 * length;
+  const Real length = sizes.motion, force = sizes.force, reach = 4 * sizes.extent + 1e3 * length;
   for (int g = 0; g < n; ++g) {
     const Real largest = motion.largest[g];
     if (mode && start[g] > 0) sign[g] = -1;

@@ -28,7 +28,7 @@ bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>
 /// Returns the stiffness class of a face: decades relative to the stiffest rock, E = sigma L / u from the scales.
 int Contact::calibration_class(const Grip& grip) const {
   const auto sizes = equations_.sizes();
-  const Real decade = std::round(std::log10(grip.modulus * sizes.jump / (sizes.traction * sizes.extent)));
+  const Real decade = std::round(std::log10(grip.modulus * sizes.gap / (sizes.multiplier * sizes.extent)));
   return static_cast<int>(std::clamp<Real>(decade + n_classes / 2, 0, n_classes - 1));
 }
 
@@ -39,13 +39,13 @@ int Contact::calibration_class(const Grip& grip) const {
 /// If sides approach each other under a constant load, the traction does not change. Round-off of the traction is not a
 /// stiffness.
 bool Contact::calibrate(const BlockVector& x, bool first) {
-  if (blocks_.traction < 0) return false;
+  if (blocks_.multiplier < 0) return false;
   calibration_.resize(n_classes, 0);
   if (std::find(calibration_.begin(), calibration_.end(), 0) == calibration_.end()) return false;
   const auto before = std::exchange(grips_, equations_.grips(x));
   if (first) return false;
   const auto sizes = equations_.sizes();
-  const Real stress = sizes.traction, length = sizes.jump;
+  const Real stress = sizes.multiplier, length = sizes.gap;
   std::array<std::array<Real, n_sums>, n_classes> here{};
   for (std::size_t f = 0; f < grips_.size(); ++f) {
     const auto& now = grips_[f];

@@ -25,14 +25,14 @@ void Contact::remove_rigid_motions(const fields::Layout& displacement) {
 BlockVector Contact::without_rigid_motions(const BlockVector& ghosted) {
   auto x = ghosted;
   if (deformation_.is_null()) return x;
-  Tpetra::deep_copy(*deformation_, *ghosted[blocks_.displacement]);
+  Tpetra::deep_copy(*deformation_, *ghosted[blocks_.motion]);
   pieces_->remove_rigid(*deformation_);
-  x[blocks_.displacement] = deformation_;
+  x[blocks_.motion] = deformation_;
   return x;
 }
 
 void Contact::remember(const BlockVector& x) {
-  if (pieces_) committed_ = rcp(new fields::Vector(*x[blocks_.displacement], Teuchos::Copy));
+  if (pieces_) committed_ = rcp(new fields::Vector(*x[blocks_.motion], Teuchos::Copy));
 }
 
 void Contact::resume(const BlockVector& x, const std::vector<Real>& calibration) {
@@ -56,7 +56,7 @@ void Contact::damp(Real everywhere, const std::vector<Real>& here) {
 bool Contact::tether(Real stiffness, const BlockVector& x) {
   regularisation_.tether = 0;
   equations_.begin_anew();
-  if (stiffness == 0 || blocks_.traction < 0) return blocks_.traction >= 0;
+  if (stiffness == 0 || blocks_.multiplier < 0) return blocks_.multiplier >= 0;
   const auto held = equations_.grips(x);
   const int dim = mesh_->dim();
   View<Real**> anchor("anchor", held.size(), 2 * dim);

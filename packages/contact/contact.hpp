@@ -14,11 +14,11 @@ namespace sprekk::contact {
 
 /// Typical sizes under the present loads; zero for absent quantities.
 struct Sizes {
-  Real displacement = 0;  ///< m
-  Real force = 0;         ///< row of the displacement, N (N/m in 2D)
-  Real traction = 0;      ///< Pa
-  Real jump = 0;          ///< in traction rows, m
-  Real extent = 0;        ///< largest extent of the domain, m
+  Real motion = 0;      ///< displacement, m
+  Real force = 0;       ///< row of the displacement, N (N/m in 2D)
+  Real multiplier = 0;  ///< traction, Pa
+  Real gap = 0;         ///< jump in traction rows, m
+  Real extent = 0;      ///< largest extent of the domain, m
 };
 
 /// Interface to the equations that include contact. All members except sizes() are collective.
@@ -37,8 +37,8 @@ class Equations {
 
 /// Block numbers of contact; -1: absent.
 struct Blocks {
-  int displacement = -1;  ///< displacement of bodies that may be supported by contact alone
-  int traction = -1;
+  int motion = -1;      ///< displacement of bodies that may be supported by contact alone
+  int multiplier = -1;  ///< contact traction
 };
 
 /// Globalisation for bodies in contact. Theory: docs/model/contact.md. All members are collective unless they return

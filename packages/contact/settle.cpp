@@ -66,9 +66,9 @@ std::optional<std::vector<RigidRow>> Contact::way_back(const BlockVector& x,
                                                        const std::vector<LoosePieces::Slide>& slides,
                                                        const std::vector<Real>& least) {
   constexpr int most_passes = 30;
-  const Real length = equations_.sizes().displacement, slack = 0.1 * margin * length;
+  const Real length = equations_.sizes().motion, slack = 0.1 * margin * length;
   auto there = fields::create_like(x);
-  auto away = fields::Vector(*x[blocks_.displacement], Teuchos::Copy);
+  auto away = fields::Vector(*x[blocks_.motion], Teuchos::Copy);
   away.update(-1, *committed_, 1);
   const auto places = pieces_->places(away, slides);
   std::vector<LoosePieces::Obstacle> obstacles;
@@ -76,7 +76,7 @@ std::optional<std::vector<RigidRow>> Contact::way_back(const BlockVector& x,
     const auto motion = pieces_->nearest(places, obstacles, length);
     if (!motion) return {};
     fields::copy(x, there);
-    pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *there[blocks_.displacement]);
+    pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *there[blocks_.motion]);
     const auto grips = equations_.grips(there);
     const auto n_before = obstacles.size();
     for (LocalIndex f = 0; f < static_cast<LocalIndex>(grips.size()); ++f) {
@@ -99,7 +99,7 @@ bool Contact::settle(BlockVector& x) {
   if (!pieces_) return false;
   nearest_known_ = true;
   const auto sizes = equations_.sizes();
-  const Real length = sizes.displacement, least = least_load * sizes.traction;
+  const Real length = sizes.motion, least = least_load * sizes.multiplier;
   auto released = equations_.grips(x);
   std::vector<Real> apart, touching;
   for (const auto& grip : released) {
@@ -115,9 +115,9 @@ bool Contact::settle(BlockVector& x) {
   if (!motion) motion = way_back(x, slides, touching);  // the piece fits without clearance
   nearest_known_ = motion.has_value();
   if (!motion) return false;
-  auto moved = fields::Vector(*x[blocks_.displacement], Teuchos::Copy);
-  pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *x[blocks_.displacement]);
-  moved.update(-1, *x[blocks_.displacement], 1);
+  auto moved = fields::Vector(*x[blocks_.motion], Teuchos::Copy);
+  pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *x[blocks_.motion]);
+  moved.update(-1, *x[blocks_.motion], 1);
   return moved.normInf() > settled * length;
 }
 

@@ -20,7 +20,7 @@ class Globalisation {
   virtual std::vector<char> states(const BlockVector& x) { return {}; }
   /// Hash of the states of all ranks: the same on every rank and for any partition.
   virtual std::size_t state_hash(const std::vector<char>& states) { return 0; }
-  /// True if the resistance of joints decreases with slip, so that a full Newton step may diverge. Collective.
+  /// True if the resistance decreases with the motion, so that a full Newton step may diverge. Collective.
   virtual bool weakens(const BlockVector& x) { return false; }
   /// Description of the location of flagged entities (order of states()) for messages; empty if none is flagged on any
   /// rank.

@@ -334,7 +334,7 @@ void describe_refinements(base::Section& s, int& refinements, const std::vector<
 
 void describe_tips(base::Section& s, std::string& tips) {
   s.choice(tips, "tips", {"enriched", "plain"},
-           "treatment of crack tips; enriched: displacements grow with the square root of the distance from the tip, "
+           "treatment of crack tips; enriched: node fields grow with the square root of the distance from the tip, "
            "by further unknowns at order 1, by quarter-point nodes at order 2 (Barsoum 1976); plain: no enrichment");
 }
 
@@ -346,7 +346,7 @@ void BoxMesh::describe(base::Section& s) {
   s.required(cells, "cells", "-", base::at_least(1),
              "number of squares or cubes per direction; a square contains 2 triangles, a cube 6 tetrahedra");
   s.entry(order, "order", "-", base::between(1, 2),
-          "polynomial order of the displacement in each cell: 1 (linear) or 2 (quadratic)");
+          "polynomial order of the node fields in each cell: 1 (linear) or 2 (quadratic)");
   describe_tips(s, tips);
   s.named_sections(regions, "regions", "boxes of cells with their own material");
   s.named_sections(fractures, "fractures", "plane fractures along mesh planes");
@@ -354,8 +354,7 @@ void BoxMesh::describe(base::Section& s) {
           "rotation angle of the box, counter-clockwise about the origin");
   s.entry(rotation_axis, "rotation axis", "-", base::any().size(3), "axis of the rotation in 3D, through the origin");
   describe_periodic(
-      s, periodic,
-      "directions of periodicity (x, y, z before the rotation), with equal displacements on opposite sides");
+      s, periodic, "directions of periodicity (x, y, z before the rotation), with equal node fields on opposite sides");
   describe_refinements(s, refinements, periodic);
   s.entry(renumbering_seed, "renumbering seed", "-", base::at_least(0),
           "seed of a random order of nodes and cells; absent: regular order");

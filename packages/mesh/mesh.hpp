@@ -46,7 +46,7 @@ struct GlobalMesh {
   std::vector<BoundaryFace> boundary_faces;
   std::vector<std::string> region_names, boundary_names, fracture_names;
   std::vector<SingleFracture> single_fractures = {};  ///< ordered by set
-  /// [node] 1 at crack tips with a square-root displacement field, otherwise 0; empty without such tips. Order 1
+  /// [node] 1 at crack tips with a square-root field, otherwise 0; empty without such tips. Order 1
   /// represents this field by additional unknowns (see mark_tips()), order 2 by quarter-point nodes.
   std::vector<char> tip = {};
 

@@ -133,9 +133,9 @@ MeshInfo describe(const GlobalMesh& mesh) {
     add(info.boundaries[face.boundary], norm(area_vector(mesh, face.cell, face.local_face)));
   describe_cells(mesh, info);
   describe_fractures(mesh, info);
-  info.n_displacements = mesh.dim() * info.n_nodes;
-  info.n_bubbles = 2 * mesh.dim() * info.n_fracture_faces;
-  info.n_tractions = mesh.dim() * info.n_fracture_faces;
+  info.n_of_nodes = mesh.dim() * info.n_nodes;
+  info.n_of_bubbles = 2 * mesh.dim() * info.n_fracture_faces;
+  info.n_of_faces = mesh.dim() * info.n_fracture_faces;
   return info;
 }
 
@@ -163,8 +163,8 @@ std::string to_text(const MeshInfo& info) {
       "quality       largest ratio of edges {:.4g} in cell {}, smallest scaled Jacobian {:.4g} in cell {}\n",
       info.largest_edge_ratio, info.cell_of_largest_edge_ratio, info.smallest_scaled_jacobian,
       info.cell_of_smallest_scaled_jacobian);
-  return text + fmt::format("unknowns      {} displacements, {} bubbles, {} tractions\n", info.n_displacements,
-                            info.n_bubbles, info.n_tractions);
+  return text + fmt::format("vectors       {} components at nodes, {} at bubbles, {} on fracture faces\n",
+                            info.n_of_nodes, info.n_of_bubbles, info.n_of_faces);
 }
 
 }  // namespace sprekk::mesh

@@ -34,7 +34,7 @@ struct MeshInfo {
   GlobalIndex cell_of_smallest_scaled_jacobian = 0;
 
   /// Unknowns of a simulation with contact: dim per node, 2 dim per fracture face, dim per fracture face.
-  GlobalIndex n_displacements = 0, n_bubbles = 0, n_tractions = 0;
+  GlobalIndex n_of_nodes = 0, n_of_bubbles = 0, n_of_faces = 0;
 };
 
 /// Measures a mesh before or after split(). Cells are numbered from 0. Throws an Error if the mesh has no cells, or if

@@ -22,7 +22,7 @@ struct Quantity : estimate::Functional {   ///< `what`: one of the quantities() 
   std::string unit(int dim) const;
   /// Returns true for energy norms, which cover the whole domain.
   bool is_norm() const;
-  /// Text `slip of "fault 3"`.
+  /// Text `QUANTITY of "fault 3"`.
   std::string title() const;
   /// Tolerance at a value, in the unit of the quantity. It is 0 if the value is 0 and there is no absolute tolerance.
   Real asked(Real value) const;

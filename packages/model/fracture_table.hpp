@@ -45,7 +45,7 @@ nlohmann::json described_singles(const mesh::Mesh& mesh);
 /// the columns. Column titles contain units.
 std::string to_csv(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 
-/// Returns one line per contact state, `slip: 2 of 12 fractures: "a" (100 %), "b" (35 %)`. Fractures are ordered by
+/// Returns one line per contact state, `open: 2 of 12 fractures: "a" (100 %), "b" (35 %)`. Fractures are ordered by
 /// their share of the area in this state, largest first.
 std::vector<std::string> digest(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 

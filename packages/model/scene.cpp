@@ -25,8 +25,8 @@ void Output::describe(base::Section& s) {
   s.entry(every, "every", "-", base::at_least(1),
           "interval of bulk.pvd and fractures.pvd, in steps; the last step is always written");
   s.entry(error_estimate, "error estimate", "-",
-          "estimate of the error of stress, jumps and fluxes on this mesh after every step: error_estimate in "
-          "results.json, and fields; costs a pass over all cells and, for jumps, a linear solve per step");
+          "estimate of the error due to the mesh after every step: error_estimate in results.json, and fields; costs a "
+          "pass over all cells and, with fractures, a linear solve per step");
   s.choice(time_unit, "time unit", {"s", "min", "h", "d", "year"}, "unit of times in tables of probes and in pictures");
   s.section(checkpoints, "checkpoints", "checkpoints for --restart; another checkpoint follows the last step");
 }
@@ -45,12 +45,12 @@ void MeshFile::describe(base::Section& s) {
           "under `./sprekk run` and `check`");
   if (s.complete() && path.empty() && !network) s.fail("path", "missing; it is required: a file of gmsh");
   s.entry(order, "order", "-", base::between(1, 2),
-          "polynomial order of the displacement in each cell: 1 (linear) or 2 (quadratic); 2 adds mid-edge nodes to a "
+          "polynomial order of the node fields in each cell: 1 (linear) or 2 (quadratic); 2 adds mid-edge nodes to a "
           "file of order 1; absent: as in the file");
   mesh::describe_tips(s, tips);
   mesh::describe_periodic(
       s, periodic,
-      "pairs of periodic boundaries {a, b, c, d}: equal displacements on a and on its translate b, and on c and d");
+      "pairs of periodic boundaries {a, b, c, d}: equal node fields on a and on its translate b, and on c and d");
   if (periodic.size() % 2 == 1)
     s.fail("periodic", fmt::format("has {}, must have an even number", base::counted(periodic.size(), "name")));
   mesh::describe_refinements(s, refinements, periodic);

@@ -59,9 +59,8 @@ void Stage::describe(base::Section& s) {
   s.entry(excavate, "excavate", "-",
           "names of regions that the stage excavates; their walls become boundaries of the same names, and fractures "
           "end there");
-  s.entry(
-      backfill, "backfill", "-",
-      "names of excavated regions that the stage fills with the materials of \"Regions\", free of stress when placed");
+  s.entry(backfill, "backfill", "-",
+          "names of excavated regions that the stage fills with the materials of \"Regions\", unloaded when placed");
   s.entry(release, "release", "s", base::positive(),
           "duration of the linear release of unbalanced forces at the begin of the stage; absent: release in its first "
           "step");

@@ -46,7 +46,7 @@ std::vector<std::string> steps_across_knots(const Scene& scene) {
           physics::implausible(fmt::format("{}: Sprekk > Time", scene.origin),
                                fmt::format("{} step{} over knots of the table \"{}\", the first at t = {:.6g} s", n,
                                            n == 1 ? " goes" : "s go", of.name, knot),
-                               "loads are evaluated only at the ends of steps, and slip depends on their path",
+                               "loads are evaluated only at the ends of steps, and results depend on their path",
                                "take more \"steps\", a \"schedule\" with the knots in it, or a \"tolerance\""));
   }
   return all;

@@ -54,12 +54,12 @@ std::vector<bool> far_entries(const NodeGraph& graph, const Nodes& nodes);
 void coarsen_beyond(const NodeGraph& graph, const Nodes& nodes, const View<LocalIndex*>& aggregate, const Map& numbers,
                     Nodes& coarse);
 
-/// Marks contact as weak at nodes from which part of it is out of reach, as on faces with a long edge. Jumps that
-/// alternate along this edge do no work on contact. A prolongator with a uniform jump on each face would resist them.
-/// Contact couples free nodes that are not neighbours. Sets `nodes.contact_edge` of these nodes to their shortest edge,
-/// or keeps that of a finer level, and sets 0 elsewhere. Returns the flatness of cells at nodes that were marked on the
-/// finer level and are no longer marked. It is the root mean square of the distance of the nearest neighbour over
-/// contact_edge; 0 if these are less than a tenth of the nodes in contact. Collective.
+/// Marks contact as weak at nodes from which part of it is out of reach, as on faces with a long edge. Differences of
+/// both sides that alternate along this edge do no work on contact. A prolongator with a uniform difference on each
+/// face would resist them. Contact couples free nodes that are not neighbours. Sets `nodes.contact_edge` of these nodes
+/// to their shortest edge, or keeps that of a finer level, and sets 0 elsewhere. Returns the flatness of cells at nodes
+/// that were marked on the finer level and are no longer marked. It is the root mean square of the distance of the
+/// nearest neighbour over contact_edge; 0 if these are less than a tenth of the nodes in contact. Collective.
 Real leave_out_far_contact(const NodeGraph& graph, Nodes& nodes);
 
 }  // namespace sprekk::multigrid

@@ -46,10 +46,10 @@ std::size_t enough_for(const Nodes& nodes, const Comm& comm) {
   return share * all[0] < all[1] ? enough : 0;
 }
 
-/// Returns the degree of the smoother. Jumps that alternate along long edges of fractures do no work on contact. Its
-/// stiffness is similar to that of the short edges of flat cells. The diagonal is therefore too large for these jumps,
-/// by up to the square of the aspect ratio. Coarse nodes represent the jumps while cells are coarsened across short
-/// edges. On the level where this ends, only the smoother reduces them.
+/// Returns the degree of the smoother. Differences of both sides that alternate along long edges of fractures do no
+/// work on contact. Its stiffness is similar to that of the short edges of flat cells. The diagonal is therefore too
+/// large for them, by up to the square of the aspect ratio. Coarse nodes represent them while cells are coarsened
+/// across short edges. On the level where this ends, only the smoother reduces them.
 int degree_for(Real flatness, int degree) {
   return std::max(degree, static_cast<int>(std::lround(std::min<Real>(2 * flatness, most_degree))));
 }

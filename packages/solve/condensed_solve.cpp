@@ -52,7 +52,8 @@ LinearSystem CondensedSolve::system() {
                                {},
                                problem_.symmetric_blocks(),
                                problem_.schur(elimination_.remaining()[r])});
-    // only displacements: their aggregates must not cross fractures; other fields couple through eliminated unknowns
+    // only fields with rigid motions: their aggregates must not cross fractures; other fields couple through eliminated
+    // unknowns
     if (with_bulk && blocks[r].near_null_space.n() > 0)
       system.diagonal.back().bulk = [this, r](const auto& work) { elimination_.with_bulk(r, work); };
   }

@@ -1,4 +1,4 @@
-// Level above multigrid for displacements of order 2.
+// Level above multigrid for node fields of order 2.
 #pragma once
 
 #include "solve/preconditioner.hpp"

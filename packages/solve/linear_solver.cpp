@@ -55,9 +55,8 @@ void LinearSolverOptions::describe(base::Section& section) {
                 "true with checkpoints");
   section.passthrough(mumps, "MUMPS", "control parameters of MUMPS by the names ICNTL(i) and CNTL(i)");
   section.passthrough(belos, "Belos", "parameters of the library Belos; \"Solver Type\" selects another Krylov method");
-  section.hint(
-      {"MueLu"},
-      "It belongs to a block: Solver > Blocks > displacement > \"type\" MueLu, and \"MueLu\" in the same section.");
+  section.hint({"MueLu"},
+               "It belongs to a block: Solver > Blocks > (field) > \"type\" MueLu, and \"MueLu\" in the same section.");
   check_library_entries(section, mumps, belos);
 }
 

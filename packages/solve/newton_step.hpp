@@ -25,7 +25,8 @@ namespace sprekk::solve {
 /// - Before a step is tried, its share of free motions is balanced, see Globalisation::balance().
 /// - Entities with alternating states are damped by Iterates::swinging() in the next step.
 /// - Coefficients of fluxes that depend on x: Picard decides when steps are searched and which are rejected.
-/// - Joints that weaken with slip: once a full step with lagged coefficients increases the merit of the lagged problem,
+/// - Resistance that decreases with the motion: once a full step with lagged coefficients increases the merit of the
+/// lagged problem,
 ///   later steps are searched for a decrease of this merit. The first step of a Picard phase is not searched. The
 ///   coefficients remain frozen until the merit has decreased to a tenth.
 /// Refers to its arguments. All members are collective.

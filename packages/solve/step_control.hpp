@@ -19,8 +19,8 @@ struct StepControlOptions {
 /// counts. n Newton iterations suggest dt (wanted/n)^(1/2). The length is not reduced further if a tenth of it has not
 /// saved iterations. If an error is unknown, a step is at most as long as the previous one.
 /// - Steps with an error above the tolerance are rejected. Exceptions: the minimum length, `most_rejections` in
-///   succession, or a rejected longer step that was only slightly less accurate (loads that jump do so in steps of any
-///   length).
+///   succession, or a rejected longer step that was only slightly less accurate (discontinuous loads do not depend on
+///   the length).
 /// - After a rejection, the next attempt has at most half the length, or the minimum length.
 /// - Steps end at the stops, which must increase. The last two steps before a stop are equal, so that none is tiny.
 class StepControl {

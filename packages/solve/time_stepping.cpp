@@ -129,7 +129,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     if (size == 1) {
       if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // time of x
       if (const auto where = problem_.globalisation().where(report.unsettled); !where.empty())
-        report.reason += "; faces that oscillate between open, stick and slip: " + where;
+        report.reason += "; faces that oscillate between contact states: " + where;
       if (!loose.empty())
         report.reason =
             "no equilibrium found: in the last iterates " + loose + ", and nothing constrains it; " + report.reason;

@@ -228,12 +228,13 @@ class Commands(ProgramTest):
         for line in ("cells         82 triangles of order 1", "nodes         65, 7 of them copies along fractures",
                      'region        "rock": 82 cells, area 16', 'boundary      "south": 8 faces, length 4',
                      'fracture      "f1": 4 faces, length 3.2', "tips          4 points", "intersections 1 points",
-                     "unknowns      130 displacements, 32 bubbles, 16 tractions"):
+                     "vectors       130 components at nodes, 32 at bubbles, 16 on fracture faces"):
             self.assertIn(line, flat.splitlines())
         solid, _ = self.call("mesh-info", meshes / "triple_order2.msh", "--fractures", "f1,f2,f3", ranks=2)
         for line in ("cells         120 tetrahedra of order 2", 'boundary      "top": 4 faces, area 4',
                      'fracture      "f3": 8 faces, area 2.25', "tips          24 edges with 18 corners",
-                     "intersections 6 edges, which meet in 1 points", "unknowns      702 displacements, 144 bubbles, 72 tractions"):
+                     "intersections 6 edges, which meet in 1 points",
+                     "vectors       702 components at nodes, 144 at bubbles, 72 on fracture faces"):
             self.assertEqual(solid.splitlines().count(line), 1, line)
         hexahedra, _ = self.call("mesh-info", meshes / "hexahedra.msh", "--fractures", "f1,f2")
         self.assertIn("32 hexahedra of order 1", hexahedra)

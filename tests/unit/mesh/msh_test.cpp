@@ -273,9 +273,9 @@ TEST(MeshInfo, Measures) {
   EXPECT_EQ(info.n_fracture_faces, 4 + 2 + 2);
   EXPECT_EQ(info.n_tips, 2 + 2);
   EXPECT_EQ(info.n_intersections, 2);
-  EXPECT_EQ(info.n_displacements, 2 * info.n_nodes);
-  EXPECT_EQ(info.n_bubbles, 4 * 8);
-  EXPECT_EQ(info.n_tractions, 2 * 8);
+  EXPECT_EQ(info.n_of_nodes, 2 * info.n_nodes);
+  EXPECT_EQ(info.n_of_bubbles, 4 * 8);
+  EXPECT_EQ(info.n_of_faces, 2 * 8);
   EXPECT_DOUBLE_EQ(info.mean_edge, 1);
   EXPECT_DOUBLE_EQ(info.smallest_scaled_jacobian, 1);
 

@@ -40,7 +40,7 @@ TEST(Held, TractionAndRollersAlone) {
                   AllOf(HasSubstr("nothing constrains the rock of \"bulk\""),
                         HasSubstr(dim == 2 ? "it can move along (1, 0)." : "it can move along (1, 0, 0)"),
                         HasSubstr(dim == 2 ? "cells of" : "it can rotate about the axis (0, 1, 0) through (1, 1, 1)"),
-                        HasSubstr("prescribe the missing displacements")))
+                        HasSubstr("prescribe the missing components")))
           << cells.name();
       prescribe(scene, "west", first<std::string>(dim, {"0", "free", "0"}));
       EXPECT_EQ(error_of(scene), "") << cells.name();  // contact constrains the upper half
