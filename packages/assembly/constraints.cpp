@@ -2,6 +2,7 @@
 
 #include "assembly/one_sided.hpp"
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 #include "mesh/facets.hpp"
 
 #include <fmt/ranges.h>
@@ -225,9 +226,9 @@ Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout,
       held_(find_held(mesh, layout, conditions_)),
       mask_("constrained", layout.n_owned()),
       values_("prescribed", layout.n_owned()) {
-  auto mask = Kokkos::create_mirror_view(mask_);
+  const base::HostTable<char*> mask(mask_);
   for (const auto& entry : held_.entries) mask(entry.unknown) = 1;
-  Kokkos::deep_copy(mask_, mask);
+  mask.on_device();
 }
 
 std::vector<contact::Support> Constraints::supports() const {
@@ -241,9 +242,9 @@ void Constraints::evaluate(Real t) {
   const auto prescribed = prescribed_values(held_, conditions_, t, conflicts);
   SPREKK_CHECK(conflicts.empty(), "{}", fmt::join(conflicts, "\n"));
   largest_ = largest_of(prescribed);
-  auto values = Kokkos::create_mirror_view(values_);
+  const base::HostTable<Real*> values(values_);
   for (std::size_t k = 0; k < prescribed.size(); ++k) values(held_.entries[k].unknown) = prescribed[k];
-  Kokkos::deep_copy(values_, values);
+  values.on_device();
 }
 
 }  // namespace sprekk::assembly

@@ -4,18 +4,21 @@
 #include "assembly/loop.hpp"
 #include "assembly/reference_cell.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/host_table.hpp"
 
 #include <memory>
+#include <numeric>
 
 namespace sprekk::assembly {
 
 namespace {
 
+using OfCell = std::function<Real(LocalIndex)>;
+
 template <Shape shape>
-View<Real**> cell_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) {
+View<Real**> cell_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
-  const View<Real**> volume("volume", mesh.n_cells(), n * dim);
-  const auto host = Kokkos::create_mirror_view(volume);
+  const base::HostTable<Real**> volume("volume", mesh.n_cells(), n * dim);
   Real X[n][dim], dN[n][dim], g[dim];
   for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
     gather_host<shape>(mesh, c, X);
@@ -24,21 +27,19 @@ View<Real**> cell_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) {
       const CellPoint<shape> point(X, dN);
       for (int a = 0; a < n; ++a) {
         point.gradient(dN[a], g);
-        for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * factor(c) * g[i];
+        for (int i = 0; i < dim; ++i) volume(c, a * dim + i) += part * factor(c) * g[i];
       }
     });
   }
-  Kokkos::deep_copy(volume, host);
-  return volume;
+  return volume.on_device();
 }
 
 template <Shape shape>
-View<Real**> bubble_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) {
+View<Real**> bubble_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   using Cell = ReferenceCell<shape>;
   const auto sides = fracture_sides(mesh);
-  const View<Real**> volume("volume", sides.size(), dim);
-  const auto host = Kokkos::create_mirror_view(volume);
+  const base::HostTable<Real**> volume("volume", sides.size(), dim);
   Real X[n][dim], dN[n][dim], db[dim], g[dim];
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const auto& face = mesh.fracture_faces[sides[s][0]];
@@ -48,27 +49,24 @@ View<Real**> bubble_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) 
       Cell::gradients(xi, dN);
       Cell::bubble(face.local_face[sides[s][1]], xi, db);
       CellPoint<shape>(X, dN).gradient(db, g);
-      for (int i = 0; i < dim; ++i) host(s, i) += part * factor(cell) * g[i];
+      for (int i = 0; i < dim; ++i) volume(s, i) += part * factor(cell) * g[i];
     });
   }
-  Kokkos::deep_copy(volume, host);
-  return volume;
+  return volume.on_device();
 }
 
 template <Shape shape>
-View<Real**> tip_divergence_of(const mesh::Mesh& mesh, const OfCell& factor) {
+View<Real**> tip_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   const auto cells = tip_cells(mesh);
-  const View<Real**> volume("volume", cells.size(), n * dim);
-  const auto host = Kokkos::create_mirror_view(volume);
+  const base::HostTable<Real**> volume("volume", cells.size(), n * dim);
   const auto rules = std::make_shared<TipRules>();
   for (std::size_t c = 0; c < cells.size(); ++c)
     TipCell<shape>(mesh, cells[c], rules).for_each_point([&](const auto&, Real part, const auto&, const auto& v) {
       for (int a = 0; a < n; ++a)
-        for (int i = 0; i < dim; ++i) host(c, a * dim + i) += part * factor(cells[c]) * v.grad_psi[a][i];
+        for (int i = 0; i < dim; ++i) volume(c, a * dim + i) += part * factor(cells[c]) * v.grad_psi[a][i];
     });
-  Kokkos::deep_copy(volume, host);
-  return volume;
+  return volume.on_device();
 }
 
 template <Shape shape>
@@ -76,8 +74,7 @@ View<Real**> tip_side_volumes_of(const mesh::Mesh& mesh) {
   constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
   const auto all = fracture_sides(mesh);
   const auto selected = tip_sides(mesh);
-  const View<Real**> volume("volume", selected.size(), n * dim);
-  const auto host = Kokkos::create_mirror_view(volume);
+  const base::HostTable<Real**> volume("volume", selected.size(), n * dim);
   using Tip = TipCell<shape>;
   const auto rules = std::make_shared<TipRules>();
   for (std::size_t s = 0; s < selected.size(); ++s) {
@@ -86,28 +83,42 @@ View<Real**> tip_side_volumes_of(const mesh::Mesh& mesh) {
     const auto means = Tip(mesh, face.cell[side], rules).face_means(face.local_face[side]);
     for (int k = 0; k < Tip::n_face; ++k)
       for (int i = 0; i < dim; ++i)
-        host(s, mesh::face_nodes(shape)[face.local_face[side]][k] * dim + i) =
+        volume(s, mesh::face_nodes(shape)[face.local_face[side]][k] * dim + i) =
             (side == mesh::plus ? face.area : -face.area) * means[k] * face.frame[0][i];
   }
-  Kokkos::deep_copy(volume, host);
-  return volume;
+  return volume.on_device();
 }
 
 }  // namespace
 
-View<Real**> cell_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
-  return mesh::for_shape(mesh.shape, [&](auto shape) { return cell_divergence_of<shape()>(mesh, factor); });
+std::vector<Divergence> divergence_fields(const mesh::Mesh& mesh, const VectorFields& names) {
+  std::vector<Divergence> all = {{Loop::cells, names[0]}};
+  if (!mesh.fracture_names.empty()) all.push_back({Loop::fracture_sides, names[1]});
+  if (mesh.n_global_enriched > 0) all.push_back({Loop::tip_cells, names[2]});
+  return all;
 }
 
-View<Real**> bubble_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
-  return mesh::for_shape(mesh.shape, [&](auto shape) { return bubble_divergence_of<shape()>(mesh, factor); });
+std::vector<Divergence> divergence(const mesh::Mesh& mesh, const VectorFields& names, const OfCell& factor) {
+  auto all = divergence_fields(mesh, names);
+  for (auto& [loop, field, volume, cells] : all)
+    if (loop == Loop::cells) {
+      volume = mesh::for_shape(mesh.shape, [&](auto shape) { return cell_divergence<shape()>(mesh, factor); });
+      cells.resize(mesh.n_cells());
+      std::iota(cells.begin(), cells.end(), 0);
+    } else if (loop == Loop::fracture_sides) {
+      volume = mesh::for_shape(mesh.shape, [&](auto shape) { return bubble_divergence<shape()>(mesh, factor); });
+      for (const auto& [f, side] : fracture_sides(mesh)) cells.push_back(mesh.fracture_faces[f].cell[side]);
+    } else {
+      volume = mesh::for_corners(mesh.shape, [&](auto shape) { return tip_divergence<shape()>(mesh, factor); });
+      cells = tip_cells(mesh);
+    }
+  return all;
 }
 
 View<Real**> side_volumes(const mesh::Mesh& mesh) {
   const int dim = mesh.dim(), n = mesh.nodes_per_cell();
   const auto sides = fracture_sides(mesh);
-  const View<Real**> volume("volume", sides.size(), n * dim + dim);
-  const auto host = Kokkos::create_mirror_view(volume);
+  const base::HostTable<Real**> volume("volume", sides.size(), n * dim + dim);
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const auto [f, side] = sides[s];
     const auto& face = mesh.fracture_faces[f];
@@ -118,16 +129,11 @@ View<Real**> side_volumes(const mesh::Mesh& mesh) {
     const Real mean = bubble_mean(mesh, cell, local_face);
     for (int i = 0; i < dim; ++i) {
       for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k)
-        host(s, mesh::face_nodes(mesh.shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
-      host(s, n * dim + i) = area * mean * face.frame[0][i];
+        volume(s, mesh::face_nodes(mesh.shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
+      volume(s, n * dim + i) = area * mean * face.frame[0][i];
     }
   }
-  Kokkos::deep_copy(volume, host);
-  return volume;
-}
-
-View<Real**> tip_divergence(const mesh::Mesh& mesh, const OfCell& factor) {
-  return mesh::for_corners(mesh.shape, [&](auto shape) { return tip_divergence_of<shape()>(mesh, factor); });
+  return volume.on_device();
 }
 
 View<Real**> tip_side_volumes(const mesh::Mesh& mesh) {

@@ -1,26 +1,36 @@
 // Integrals of the divergence of vector fields over cells, and changes of the volume of fractures.
 #pragma once
 
-#include "base/view.hpp"
-#include "mesh/mesh.hpp"
+#include "assembly/loop.hpp"
 
+#include <array>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace sprekk::assembly {
 
-/// Volumes: V_K is the integral of factor div u over a cell. W_f = |f| n . mean([[u]]) belongs to a fracture face, with
-/// n from minus to plus. factor(cell) belongs to a local cell. The functions return derivatives in m^2 (2D: m) with
-/// respect to the unknowns of u in m, on the device. Not collective.
-using OfCell = std::function<Real(LocalIndex cell)>;
+/// Volumes: V_K is the integral of factor div u over a cell K. W_f = |f| n . mean([[u]]) belongs to a fracture face,
+/// with n from minus to plus. All derivatives are in m^2 (2D: m) with respect to the unknowns of u in m, on the device.
+/// No function is collective.
 
-/// dV_K/du for the nodes of the cells: [cell, node * dim + component].
-View<Real**> cell_divergence(const mesh::Mesh& mesh, const OfCell& factor);
+/// Names of the fields that contribute to u: nodes, bubbles of fracture sides, tip functions.
+using VectorFields = std::array<const char*, 3>;
 
-/// dV_K/dbeta for the face bubbles: [entity of Loop::fracture_sides, component].
-View<Real**> bubble_divergence(const mesh::Mesh& mesh, const OfCell& factor);
+/// Divergence of a field over the entities of a loop.
+struct Divergence {
+  Loop loop;
+  std::string field;
+  View<Real**> volume = {};            ///< dV_K/du [entity, unknown of the entity]
+  std::vector<LocalIndex> cells = {};  ///< [entity] K
+};
 
-/// dV_K for the tip functions: [entity of Loop::tip_cells, node * dim + component]. Requires cells of order 1.
-View<Real**> tip_divergence(const mesh::Mesh& mesh, const OfCell& factor);
+/// Returns loops and fields of a mesh: nodes, bubbles if there are fractures, tip functions if tips are enriched.
+std::vector<Divergence> divergence_fields(const mesh::Mesh& mesh, const VectorFields& names);
+/// Returns the same with volumes and cells. factor(cell) belongs to a local cell. Tip functions require cells of
+/// order 1.
+std::vector<Divergence> divergence(const mesh::Mesh& mesh, const VectorFields& names,
+                                   const std::function<Real(LocalIndex)>& factor);
 
 /// Contribution of one side to dW_f/d(u, beta): [entity of Loop::fracture_sides, node * dim + component; component].
 View<Real**> side_volumes(const mesh::Mesh& mesh);

@@ -1,5 +1,6 @@
 #include "assembly/flux_lag.hpp"
 
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 
 #include <algorithm>
@@ -32,11 +33,8 @@ Real FluxLag::update(fields::BlockProblem::Lag how, const Structure& structure, 
     logarithms_.follow(found);
   else
     logarithms_.start(found);
-  View<Real*> values("coefficients", found.size());
-  const auto host = Kokkos::create_mirror_view(values);
-  for (std::size_t f = 0; f < found.size(); ++f) host(f) = std::exp(logarithms_.y()[f]);
-  Kokkos::deep_copy(values, host);
-  coefficients_ = values;
+  for (std::size_t f = 0; f < found.size(); ++f) found[f] = std::exp(logarithms_.y()[f]);
+  coefficients_ = base::to_device(found, "coefficients");
   return farthest;
 }
 

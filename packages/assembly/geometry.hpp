@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assembly/cell_nodes.hpp"
+#include "base/host_table.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>
@@ -11,15 +12,7 @@
 
 namespace sprekk::assembly {
 
-/// Returns a copy of the values in device memory.
-template <class T>
-ConstView<T*> to_device(const std::vector<T>& from, const std::string& name) {
-  View<T*> to(name, from.size());
-  const auto host = Kokkos::create_mirror_view(to);
-  for (std::size_t i = 0; i < from.size(); ++i) host(i) = from[i];
-  Kokkos::deep_copy(to, host);
-  return to;
-}
+using base::to_device;
 
 /// Returns the material number of each local cell. If `of_cell` is empty, the number is that of the region.
 inline ConstView<int*> material_numbers(const Geometry& geometry, const std::vector<int>& of_cell) {

@@ -1,6 +1,7 @@
 // Matrix graphs, and positions of stencils in them.
 #include "assembly/loop.hpp"
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -11,10 +12,7 @@ using fields::Layout;
 
 namespace {
 
-auto to_host(const ConstView<LocalIndex**>& table) {
-  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), table);
-}
-using HostTable = decltype(to_host({}));
+using HostTable = decltype(base::to_host(ConstView<LocalIndex**>()));
 
 std::shared_ptr<const Writers> writers_of(const Stencil& rows, LocalIndex n_rows) {
   const auto kept = rows.writers.lock();
@@ -37,7 +35,7 @@ struct Columns {
       : counts(n_rows, 0), end_of_(n_columns, 0) {
     for (const auto& [rows, row_columns] : couplings) {
       writers_.push_back(writers_of(rows, n_rows));
-      first_.push_back(to_host(row_columns.first));
+      first_.push_back(base::to_host(row_columns.first));
     }
     for (LocalIndex row = 0; row < n_rows; row += couplings.front().first.width) {
       for (std::size_t k = 0; k < couplings.size(); ++k)
@@ -74,7 +72,7 @@ struct Columns {
 }  // namespace
 
 Writers::Writers(const ConstView<LocalIndex**>& first, LocalIndex n_rows) : start_(n_rows + 2, 0) {
-  const auto host = to_host(first);
+  const auto host = base::to_host(first);
   const auto for_owned = [&](const auto& visit) {
     for (std::size_t e = 0; e < host.extent(0); ++e)
       for (std::size_t r = 0; r < host.extent(1); ++r)
@@ -90,10 +88,10 @@ Writers::Writers(const ConstView<LocalIndex**>& first, LocalIndex n_rows) : star
 ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const Stencil& rows, const Stencil& columns) {
   const auto graph = matrix.getCrsGraph()->getLocalGraphHost();
   const auto writers = writers_of(rows, graph.numRows());
-  const auto column_first = to_host(columns.first);
-  View<LocalIndex***> positions("positions", rows.first.extent(0), rows.first.extent(1), column_first.extent(1));
-  auto host = Kokkos::create_mirror_view(positions);
-  Kokkos::deep_copy(host, -1);
+  const auto column_first = base::to_host(columns.first);
+  const base::HostTable<LocalIndex***> positions("positions", rows.first.extent(0), rows.first.extent(1),
+                                                 column_first.extent(1));
+  Kokkos::deep_copy(positions.host(), -1);
   std::vector<LocalIndex> position_of(base::n_local_elements(*matrix.getColMap()),
                                       0);  // [column] position in the row; other columns: arbitrary
   for (LocalIndex row = 0, n_rows = graph.numRows(); row < n_rows; row += rows.width) {
@@ -101,18 +99,17 @@ ConstView<LocalIndex***> find_positions(const fields::CrsMatrix& matrix, const S
     const auto begin = graph.row_map(row), length = graph.row_map(row + 1) - begin;
     for (std::size_t k = 0; k < length; ++k) position_of[graph.entries(begin + k)] = static_cast<LocalIndex>(k);
     writers->for_each(row, [&](LocalIndex e, LocalIndex r) {
-      for (std::size_t c = 0; c < host.extent(2); ++c) {
+      for (std::size_t c = 0; c < positions.extent(2); ++c) {
         const LocalIndex column = column_first(e, c);
         if (column < 0) continue;
         const LocalIndex k = position_of[column];
         SPREKK_CHECK(static_cast<std::size_t>(k) < length && graph.entries(begin + k) == column,
                      "row {} has no entry for column {}", row, column);
-        host(e, r, c) = k;
+        positions(e, r, c) = k;
       }
     });
   }
-  Kokkos::deep_copy(positions, host);
-  return positions;
+  return positions.on_device();
 }
 
 RCP<fields::CrsMatrix> make_matrix(const Layout& row_layout, const Layout& column_layout, const Couplings& couplings) {

@@ -3,6 +3,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
+#include "base/host_table.hpp"
 
 #include <memory>
 #include <optional>
@@ -75,7 +76,7 @@ class KernelModule final : public Module, public Supporting, public RowWeights {
   /// Returns the values of the module's unknown k on owned entities, or on all local nodes.
   std::vector<Real> values(const State& state, int k) const {
     const auto& field = description_.unknowns[k].field;
-    const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[own_[k]]);
+    const auto x = base::to_host(state.x[own_[k]]);
     const bool on_nodes = field.entity == fields::Entity::node;
     const LocalIndex n = on_nodes ? mesh_->n_nodes() : fields::n_entities(*mesh_, field.entity, false);
     std::vector<Real> values;

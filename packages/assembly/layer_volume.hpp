@@ -4,6 +4,7 @@
 #include "assembly/geometry.hpp"
 #include "assembly/loop.hpp"
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 
 namespace sprekk::assembly {
 
@@ -18,8 +19,7 @@ View<Real**> layer_volumes(const mesh::Mesh& mesh) {
       "the volume of a layer in a fracture is not known where crack tips are enriched; give the mesh plain tips");
   constexpr int dim = mesh::dimension(shape), bubble = mesh::n_nodes(shape) * dim;
   const auto sides = fracture_sides(mesh);
-  const View<Real**> V("layer volumes", sides.size(), bubble + dim + 1);
-  const auto host = Kokkos::create_mirror_view(V);
+  const base::HostTable<Real**> V("layer volumes", sides.size(), bubble + dim + 1);
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const auto& face = mesh.fracture_faces[sides[s][0]];
     const int side = sides[s][1], local_face = face.local_face[side];
@@ -28,13 +28,12 @@ View<Real**> layer_volumes(const mesh::Mesh& mesh) {
     for (int i = 0; i < dim; ++i) {
       const Real area = (side == mesh::plus ? face.area : -face.area) * face.frame[0][i];
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
-        host(s, mesh::face_nodes(shape)[local_face][k] * dim + i) = area * shares[k];
-      host(s, bubble + i) = area * mean;
+        V(s, mesh::face_nodes(shape)[local_face][k] * dim + i) = area * shares[k];
+      V(s, bubble + i) = area * mean;
     }
-    host(s, bubble + dim) = face.area / 2;
+    V(s, bubble + dim) = face.area / 2;
   }
-  Kokkos::deep_copy(V, host);
-  return V;
+  return V.on_device();
 }
 
 }  // namespace sprekk::assembly

@@ -1,9 +1,7 @@
 // Part of a residual that is constant during a step.
 #pragma once
 
-#include "base/types.hpp"
-
-#include <string>
+#include "base/host_table.hpp"
 
 namespace sprekk::assembly {
 
@@ -15,10 +13,10 @@ class Load {
   /// Sets all values to zero and calls fill(values) on the host.
   template <class Fill>
   void set(const Fill& fill) {
-    const auto host = Kokkos::create_mirror_view(values_);
-    Kokkos::deep_copy(host, 0.0);
-    fill(host);
-    Kokkos::deep_copy(values_, host);
+    const base::HostTable<Real*> table(values_);
+    Kokkos::deep_copy(table.host(), 0.0);
+    fill(table.host());
+    table.on_device();
   }
 
   /// Adds factor * values to the rows.

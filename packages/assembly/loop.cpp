@@ -1,6 +1,7 @@
 #include "assembly/loop.hpp"
 
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -61,25 +62,22 @@ namespace {
 /// Fills a table with rows of equal length, entity by entity.
 class TableBuilder {
  public:
-  TableBuilder(std::size_t n_rows, int n_columns)
-      : table_("stencil", n_rows, n_columns), host_(Kokkos::create_mirror_view(table_)) {}
+  TableBuilder(std::size_t n_rows, int n_columns) : table_("stencil", n_rows, n_columns) {}
   void add(LocalIndex value) {
-    host_(row_, column_) = value;
-    if (++column_ == static_cast<int>(host_.extent(1))) {
+    table_(row_, column_) = value;
+    if (++column_ == static_cast<int>(table_.extent(1))) {
       column_ = 0;
       ++row_;
     }
   }
   ConstView<LocalIndex**> finish() {
-    SPREKK_CHECK(row_ == host_.extent(0) || host_.extent(1) == 0, "stencil table filled to row {} of {}", row_,
-                 host_.extent(0));
-    Kokkos::deep_copy(table_, host_);
-    return table_;
+    SPREKK_CHECK(row_ == table_.extent(0) || table_.extent(1) == 0, "stencil table filled to row {} of {}", row_,
+                 table_.extent(0));
+    return table_.on_device();
   }
 
  private:
-  View<LocalIndex**> table_;
-  View<LocalIndex**>::HostMirror host_;
+  base::HostTable<LocalIndex**> table_;
   std::size_t row_ = 0;
   int column_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include "assembly/multigrid_data.hpp"
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 
 #include <algorithm>
@@ -123,7 +124,7 @@ void Structure::find_exchanges() {
       for (const auto& name : coupling.columns) {
         const int f = context.field(name);
         const auto first = context.stencil(coupling.loop, f).first;
-        const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), first);
+        const auto host = base::to_host(first);
         for (std::size_t e = 0; e < host.extent(0); ++e)
           for (std::size_t g = 0; g < host.extent(1); ++g) here[f] |= host(e, g) >= layouts[f].n_owned();
       }

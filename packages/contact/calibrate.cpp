@@ -2,6 +2,7 @@
 #include "contact/contact.hpp"
 
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 
 #include <algorithm>
@@ -85,14 +86,12 @@ bool Contact::calibrate(const BlockVector& x, bool first) {
 void Contact::correct_augmentation(const std::vector<Grip>& grips) {
   SPREKK_CHECK(calibration_.size() == n_classes, "the calibration has {} factors, there must be {}",
                calibration_.size(), n_classes);
-  View<Real*> factor("factor", grips.size());
-  const auto host = Kokkos::create_mirror_view(factor);
-  for (std::size_t f = 0; f < grips.size(); ++f) {
-    const Real correction = calibration_[calibration_class(grips[f])];
-    host(f) = correction != 0 ? correction : 1;
+  std::vector<Real> factor;
+  for (const auto& grip : grips) {
+    const Real correction = calibration_[calibration_class(grip)];
+    factor.push_back(correction != 0 ? correction : 1);
   }
-  Kokkos::deep_copy(factor, host);
-  regularisation_.augmentation = factor;
+  regularisation_.augmentation = base::to_device(factor, "factor");
 }
 
 }  // namespace sprekk::contact

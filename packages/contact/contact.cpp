@@ -1,5 +1,6 @@
 #include "contact/contact.hpp"
 
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 
 #include <fmt/ranges.h>
@@ -46,11 +47,9 @@ void Contact::damp(Real everywhere, const std::vector<Real>& here) {
   damped_everywhere_ = everywhere;
   regularisation_.damping = {};
   if (everywhere == 0 && here.empty()) return;
-  View<Real*> damping("damping", mesh_->n_owned_fracture_faces);
-  const auto host = Kokkos::create_mirror_view(damping);
-  for (std::size_t f = 0; f < host.extent(0); ++f) host(f) = std::max(everywhere, here.empty() ? 0 : here[f]);
-  Kokkos::deep_copy(damping, host);
-  regularisation_.damping = damping;
+  const base::HostTable<Real*> damping("damping", mesh_->n_owned_fracture_faces);
+  for (std::size_t f = 0; f < damping.extent(0); ++f) damping(f) = std::max(everywhere, here.empty() ? 0 : here[f]);
+  regularisation_.damping = damping.on_device();
 }
 
 bool Contact::tether(Real stiffness, const BlockVector& x) {
@@ -59,15 +58,13 @@ bool Contact::tether(Real stiffness, const BlockVector& x) {
   if (stiffness == 0 || blocks_.multiplier < 0) return blocks_.multiplier >= 0;
   const auto held = equations_.grips(x);
   const int dim = mesh_->dim();
-  View<Real**> anchor("anchor", held.size(), 2 * dim);
-  const auto host = Kokkos::create_mirror_view(anchor);
+  const base::HostTable<Real**> anchor("anchor", held.size(), 2 * dim);
   for (std::size_t f = 0; f < held.size(); ++f)
     for (int i = 0; i < dim; ++i) {
-      host(f, i) = held[f].jump[i];
-      host(f, dim + i) = held[f].traction[i];
+      anchor(f, i) = held[f].jump[i];
+      anchor(f, dim + i) = held[f].traction[i];
     }
-  Kokkos::deep_copy(anchor, host);
-  regularisation_.anchor = anchor;
+  regularisation_.anchor = anchor.on_device();
   regularisation_.tether = stiffness;
   return true;
 }

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/host_table.hpp"
 #include "solve/elimination_plan.hpp"
 
 namespace sprekk::solve {
@@ -10,10 +11,7 @@ namespace {
 
 using GlobalIndices = std::vector<GlobalIndex>;
 
-template <class T>
-auto to_host(const View<T*>& from) {
-  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), from);
-}
+using base::to_host;
 
 class CondensedPlanner {
  public:

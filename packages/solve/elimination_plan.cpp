@@ -9,14 +9,6 @@
 
 namespace sprekk::solve {
 
-View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name) {
-  View<LocalIndex*> to(name, from.size());
-  Kokkos::deep_copy(to,
-                    Kokkos::View<const LocalIndex*, Kokkos::LayoutRight, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                        from.data(), from.size()));
-  return to;
-}
-
 namespace {
 
 using GlobalIndices = std::vector<GlobalIndex>;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/host_table.hpp"
 #include "fields/block_problem.hpp"
 #include "fields/halo.hpp"
 
@@ -21,7 +22,7 @@ using fields::Vector;
 
 using LocalIndices = std::vector<LocalIndex>;
 
-View<LocalIndex*> to_device(const LocalIndices& from, const std::string& name);
+using base::to_device;
 
 /// Copy of matrix values: out(target(k) + i) = value k * width + i of the matrix, i < width.
 struct Scatter {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "base/over_ranks.hpp"
-#include "solve/condensed_block.hpp"
 #include "fields/node_kernels.hpp"
+#include "solve/condensed_block.hpp"
 #include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
@@ -114,14 +114,14 @@ bool LocalElimination::take_constraints(const BlockProblem& problem) {
 /// Sets the sizes of a group's unknowns under the present loads, as powers of two relative to the first block. Scaling
 /// therefore causes no round-off, and factors remain bitwise equal under proportional loads.
 void LocalElimination::set_scales(const BlockProblem& problem, GroupPlan& group) {
-  const auto scale = Kokkos::create_mirror_view(group.column_scale);
+  const base::HostTable<Real*> scale(group.column_scale);
   const Real first = problem.blocks()[group.blocks.front()].kinematic_scale;
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     const auto& block = problem.blocks()[group.blocks[i]];
     const Real power = std::exp2(std::round(std::log2(block.kinematic_scale / first)));
     for (int c = 0; c < block.n_components; ++c) scale(group.offset[i] + c) = power;
   }
-  Kokkos::deep_copy(group.column_scale, scale);
+  scale.on_device();
 }
 
 /// Packs and factorises A_zz, and computes A_zz^-1 A_zb. If an entity is singular, returns false on all ranks and sets

@@ -1,6 +1,7 @@
 #include "transport/advection.hpp"
 
 #include "assembly/capabilities.hpp"
+#include "base/host_table.hpp"
 #include "transport/antidiffusion.hpp"
 #include "transport/fracture_faces.hpp"
 #include "transport/hybrid_rock.hpp"
@@ -107,15 +108,15 @@ struct InCells {
   }
   /// Copies the history to local cells. Collective.
   void start_step(const View<Real**>& kept) {
-    const auto own = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), kept);
+    const auto own = base::to_host(kept);
     std::vector<Real> owned;
     for (std::size_t e = 0; e < own.extent(0); ++e)
       for (int k = 0; k < n_passed(); ++k) owned.push_back(own(e, k));
     const auto all = with_ghosts(*of_faces, owned);
-    const auto host = Kokkos::create_mirror_view(passed);
-    for (std::size_t e = 0; e < host.extent(0); ++e)
-      for (int k = 0; k < n_passed(); ++k) host(e, k) = all[e * n_passed() + k];
-    Kokkos::deep_copy(passed, host);
+    const base::HostTable<Real**> values(passed);
+    for (std::size_t e = 0; e < values.extent(0); ++e)
+      for (int k = 0; k < n_passed(); ++k) values(e, k) = all[e * n_passed() + k];
+    values.on_device();
   }
   /// Updates the history of volumes. `first`: start of a run, where the volume of the last step is zero.
   template <class Assembler, class Op>
@@ -240,9 +241,7 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
   bool symmetric(const assembly::State&) const override { return false; }
 
   void start_step(const assembly::State& state) override {
-    if (corrects())
-      gains_ = assembly::to_device(
-          correction_->gains(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0])), "gains");
+    if (corrects()) gains_ = assembly::to_device(correction_->gains(base::to_host(state.history[0])), "gains");
     if constexpr (Where::has_passed)
       if (where_->n_passed() > 0) where_->start_step(state.history.back());
   }
@@ -264,8 +263,8 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
           op.flow.flow(e, drivers, q);
           for (int i = 0; i < n; ++i) flows(e, i) = op.capacity * q[i];
         });
-    const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), found);
-    const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), flows);
+    const auto x = base::to_host(found);
+    const auto q = base::to_host(flows);
     std::vector<Real> u, of_ends, flow, stored;
     for (LocalIndex e = 0; e < assembler_->n_entities(); ++e) {
       u.push_back(x(e, m));
@@ -275,7 +274,7 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
         flow.push_back(q(e, i));
       }
     }
-    const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
+    const auto kept = base::to_host(state.history[0]);
     correction_->keep(u, of_ends, flow, stored, state.rate > 0 ? 1 / state.rate : 0, kept);
     Kokkos::deep_copy(state.history[0], kept);
   }

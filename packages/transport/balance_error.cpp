@@ -2,6 +2,7 @@
 
 #include "assembly/geometry.hpp"
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "estimate/step_rates.hpp"
@@ -294,7 +295,7 @@ class BalanceError final : public estimate::MeshError, estimate::GoalErrors {
   void add_boundary(const std::string& boundary, const Rows& rows) const {
     const auto& mesh = system_.mesh();
     const auto& facets = *mesh.facets;
-    const auto held = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system_.constrained(blocks_[1]));
+    const auto held = base::to_host(system_.constrained(blocks_[1]));
     const int number = base::index_of(mesh.boundary_names, boundary);
     const auto set = [&](LocalIndex facet) {
       if (facet < facets.n_owned && held(facet)) rows(facet, 0) = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assembly/assembler.hpp"
+#include "base/host_table.hpp"
 #include "mesh/facets.hpp"
 #include "transport/changed_flow.hpp"
 #include "transport/face_plane.hpp"
@@ -129,21 +130,18 @@ class FractureFaces {
 
   void set_faces() {
     const LocalIndex n_faces = mesh_->n_fracture_faces();
-    View<Real**> T("T", n_faces, n * n), lift("lift", n_faces, n);
-    const auto T_host = Kokkos::create_mirror_view(T), lift_host = Kokkos::create_mirror_view(lift);
+    const base::HostTable<Real**> T("T", n_faces, n * n), lift("lift", n_faces, n);
     for (LocalIndex f = 0; f < n_faces; ++f) {
       const Plane plane = this->plane(f);
       for (int k = 0; k < n; ++k) {
-        for (int j = 0; j < n; ++j) T_host(f, k * n + j) = plane.T[k][j];
-        lift_host(f, k) = 0;
-        for (int i = 0; i < dim; ++i) lift_host(f, k) += parameters_->weight[i] * plane.d[k][i];
+        for (int j = 0; j < n; ++j) T(f, k * n + j) = plane.T[k][j];
+        lift(f, k) = 0;
+        for (int i = 0; i < dim; ++i) lift(f, k) += parameters_->weight[i] * plane.d[k][i];
       }
     }
-    Kokkos::deep_copy(T, T_host);
-    Kokkos::deep_copy(lift, lift_host);
     std::vector<laws::Conduit> conduits;
     for (const auto& face : parameters_->faces) conduits.push_back(face.along);
-    op_ = {.T = T, .lift = lift, .fluid = parameters_->fluid};
+    op_ = {.T = T.on_device(), .lift = lift.on_device(), .fluid = parameters_->fluid};
     conduits_ = assembly::to_device(conduits, "conduits");
   }
 

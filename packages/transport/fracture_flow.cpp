@@ -2,6 +2,7 @@
 
 #include "assembly/capabilities.hpp"
 #include "assembly/term.hpp"
+#include "base/host_table.hpp"
 #include "mesh/extents.hpp"
 #include "transport/fracture_faces.hpp"
 
@@ -73,7 +74,7 @@ class FractureFlow final : public assembly::Module,
   /// Computes hydraulic apertures. `widest`: at least open_.
   void coefficients(const assembly::State& state, bool widest, std::vector<Real>& values) const override {
     if (!widens_) return;
-    const auto widening = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]);
+    const auto widening = base::to_host(state.x[widening_]);
     for (std::size_t f = 0; f < values.size(); ++f)
       values[f] = std::max(parameters_.faces[f].along.hydraulic_aperture(widening(f)), widest ? open_ : 0);
   }
@@ -144,7 +145,7 @@ class FractureFlow final : public assembly::Module,
   }
 
   std::vector<Real> pressures(const assembly::State& state) const {
-    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+    const auto p = base::to_host(state.x[block_]);
     std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) values.push_back(p(mesh_->facets->fracture_face[f]));
     return values;
@@ -160,10 +161,10 @@ class FractureFlow final : public assembly::Module,
   }
 
   std::vector<Real> fluxes(const assembly::State& state) const {
-    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
-    const auto widening = widens_ ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[widening_]) : p;
+    const auto p = base::to_host(state.x[block_]);
+    const auto widening = widens_ ? base::to_host(state.x[widening_]) : p;
     const auto& change = parameters_.change;
-    const auto carried = change ? Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[carried_]) : p;
+    const auto carried = change ? base::to_host(state.x[carried_]) : p;
     std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       const Plane plane = faces_->plane(f);

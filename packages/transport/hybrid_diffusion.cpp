@@ -2,6 +2,7 @@
 
 #include "assembly/capabilities.hpp"
 #include "assembly/term.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
@@ -138,16 +139,15 @@ class HybridDiffusion final : public assembly::Module,
   }
 
   std::vector<Real> values(const assembly::State& state) const {
-    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
+    const auto u = base::to_host(state.x[blocks_[0]]);
     return {u.data(), u.data() + mesh_->n_owned_cells};
   }
 
   std::vector<Real> fluxes(const assembly::State& state) const {
-    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[0]]);
-    const auto trace = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[blocks_[1]]);
+    const auto u = base::to_host(state.x[blocks_[0]]);
+    const auto trace = base::to_host(state.x[blocks_[1]]);
     const bool changes = parameters_.change.has_value();
-    const auto carried =
-        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[changes ? carried_ : blocks_[0]]);
+    const auto carried = base::to_host(state.x[changes ? carried_ : blocks_[0]]);
     std::vector<Real> values;
     Real X[mesh::n_nodes(shape)][dim], x[1 + n_faces], q[n_faces];
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) {
@@ -221,7 +221,7 @@ class HybridDiffusion final : public assembly::Module,
 
 void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& cells,
                  const View<Real*>& facets) {
-  const auto in_cells = Kokkos::create_mirror_view(cells), on_facets = Kokkos::create_mirror_view(facets);
+  const base::HostTable<Real*> in_cells(cells), on_facets(facets);
   const auto put = [&](LocalIndex facet, const mesh::Vector& x) {
     if (facet < mesh.facets->n_owned) on_facets(facet) = u(x, 0);
   };
@@ -233,8 +233,8 @@ void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<R
   }
   for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
     for (int k = 0; k < n_ridges; ++k) put(mesh.facets->ridge[f * n_ridges + k], mesh::ridge_centre(mesh, f, k));
-  Kokkos::deep_copy(cells, in_cells);
-  Kokkos::deep_copy(facets, on_facets);
+  in_cells.on_device();
+  on_facets.on_device();
 }
 
 std::unique_ptr<assembly::Module> make_hybrid_diffusion(Shape shape, HybridDiffusionParameters parameters) {

@@ -3,6 +3,7 @@
 
 #include "assembly/constraints.hpp"
 #include "assembly/geometry.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "fields/layout.hpp"
 #include "mesh/facets.hpp"
@@ -176,7 +177,7 @@ class HybridFlux {
   std::vector<Held> held(ConstView<char*> mask) const {
     fields::Vector owned(layouts_[1]->owned()), all(layouts_[1]->ghosted());
     {
-      const auto from = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), mask);
+      const auto from = base::to_host(mask);
       const auto to = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
       for (std::size_t k = 0; k < from.extent(0); ++k) to(k, 0) = from(k);
     }

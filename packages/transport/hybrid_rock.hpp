@@ -1,6 +1,7 @@
 // Operator of the hybrid form on the cells of a mesh.
 #pragma once
 
+#include "base/host_table.hpp"
 #include "transport/hybrid_diffusion.hpp"
 
 #include <algorithm>
@@ -18,15 +19,13 @@ void set_resistance(HybridCell<shape>& op, const mesh::Mesh& mesh, const std::ve
   const auto sides = assembly::fracture_sides(mesh);
   for (const auto& [f, side] : sides)
     if (int& row = beside[mesh.fracture_faces[f].cell[side]]; row < 0) row = n++;
-  View<Real**> resistance("resistance", n, HybridCell<shape>::n);
-  const auto host = Kokkos::create_mirror_view(resistance);
+  const base::HostTable<Real**> resistance("resistance", n, HybridCell<shape>::n);
   for (const auto& [f, side] : sides) {
     const auto& face = mesh.fracture_faces[f];
-    host(beside[face.cell[side]], face.local_face[side]) = 1 / (exchange[f] * face.area);
+    resistance(beside[face.cell[side]], face.local_face[side]) = 1 / (exchange[f] * face.area);
   }
-  Kokkos::deep_copy(resistance, host);
   op.beside = assembly::to_device(beside, "beside");
-  op.resistance = resistance;
+  op.resistance = resistance.on_device();
 }
 
 template <Shape shape>

@@ -1,6 +1,7 @@
 #include "transport/outflow.hpp"
 
 #include "base/entry_of_place.hpp"
+#include "base/host_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,7 @@ Real Outflow::largest(Real t, bool beyond) const {
 std::map<LocalIndex, Real> Outflow::unbalanced_per_coefficient(const assembly::State& state) const {
   std::map<LocalIndex, Real> sums;
   if (state.unbalanced.empty()) return sums;
-  const auto unbalanced = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.unbalanced[block_]);
+  const auto unbalanced = base::to_host(state.unbalanced[block_]);
   for (const auto& [number, row, area, x] : points_)
     if (const auto& coefficient = conditions_[number].coefficient; coefficient && row < n_owned_)
       sums[row] += area * (*coefficient)(x, 0);
@@ -47,7 +48,7 @@ std::map<LocalIndex, Real> Outflow::unbalanced_per_coefficient(const assembly::S
 }
 
 void Outflow::totals(const assembly::State& state, const mesh::Mesh& mesh, std::vector<assembly::Total>& totals) const {
-  const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[block_]);
+  const auto u = base::to_host(state.x[block_]);
   const auto unbalanced = unbalanced_per_coefficient(state);
   const std::size_t first = totals.size();
   for (const auto& one : conditions_)

@@ -3,6 +3,7 @@
 
 #include "assembly/geometry.hpp"
 #include "base/expression.hpp"
+#include "base/host_table.hpp"
 #include "transport/hybrid_cell.hpp"
 #include "transport/hybrid_diffusion.hpp"
 
@@ -35,9 +36,8 @@ StabilisingFlow<shape> stabilising_flow(const mesh::Mesh& mesh, const Stabilisat
   }
   const bool varies = !of.initial.is_constant();
   const auto initial = [&](const auto& x) { return of.initial(x, 0); };
-  const View<Real**> T_device("T", mesh.n_cells(), n_faces * n_faces),
-      lift_device("lift", varies ? mesh.n_cells() : 0, n_faces);
-  const auto T = Kokkos::create_mirror_view(T_device), lift = Kokkos::create_mirror_view(lift_device);
+  const base::HostTable<Real**> T("T", mesh.n_cells(), n_faces * n_faces),
+      lift("lift", varies ? mesh.n_cells() : 0, n_faces);
   Real X[n_corners][dim];
   for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
     if (of.softness[c] == 0) continue;
@@ -58,9 +58,7 @@ StabilisingFlow<shape> stabilising_flow(const mesh::Mesh& mesh, const Stabilisat
     for (int j = 0; j < n_faces; ++j)
       lift(c, j) = assembly::face_mean(mesh, c, j, [&](const auto&, const auto& x) { return initial(x); }) - mean;
   }
-  Kokkos::deep_copy(T_device, T);
-  Kokkos::deep_copy(lift_device, lift);
-  return {.T = T_device, .lift = lift_device};
+  return {.T = T.on_device(), .lift = lift.on_device()};
 }
 
 /// Sum of the flow `Flow` in cells and the stabilising flow: q + rate (V(x) - V) - before G. V: volumes until the start

@@ -2,6 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
+#include "base/host_table.hpp"
 #include "transport/changed_flow.hpp"
 
 #include <algorithm>
@@ -177,7 +178,7 @@ class Storage final : public assembly::Module,
 
   void initial_history(const std::vector<View<Real**>>& history) const override {
     if (!changes) return;
-    const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), history[0]);
+    const auto kept = base::to_host(history[0]);
     for (std::size_t e = 0; e < kept.extent(0); ++e) kept(e, m) = carried_[e];
     Kokkos::deep_copy(history[0], kept);
   }

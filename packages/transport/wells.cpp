@@ -3,6 +3,7 @@
 #include "assembly/capabilities.hpp"
 #include "assembly/load.hpp"
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "transport/brought.hpp"
 #include "transport/exchange.hpp"
@@ -88,7 +89,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
 
   void start_step(const assembly::State& state) override {
     if (widens_) {
-      const auto before = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[0]);
+      const auto before = base::to_host(state.history[0]);
       start_ = {before.data(), before.data() + before.extent(0)};
       sums_ = sums([&](LocalIndex face) { return start_[face]; });
       for (std::size_t w = 0; w < sums_.size(); ++w)
@@ -154,7 +155,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
         totals.push_back({{"wells", one.name, carried.total}, 0, carried.unit + (mesh_->dim() == 2 ? "/m" : "")});
       }
     }
-    const auto on_host = [](const auto& x) { return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), x); };
+    const auto on_host = [](const auto& x) { return base::to_host(x); };
     const std::array p = {on_host(state.x[blocks_[0]]), on_host(state.x[blocks_[1]])};
     const auto widening = widens_ ? on_host(state.x[widening_]) : p[1];
     const auto W_of = [&](const WellConnection& c) {
@@ -197,7 +198,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
     for (const auto& c : connections_)
       if (well(c).pressure) sums[c.fracture >= 0][c.row] += W(c);
     for (int k = 0; k < 2; ++k) {
-      const auto unbalanced = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.unbalanced[blocks_[k]]);
+      const auto unbalanced = base::to_host(state.unbalanced[blocks_[k]]);
       for (auto& [row, sum] : sums[k]) sum = sum > 0 ? unbalanced(row) / sum : 0;
     }
     return sums;
@@ -257,7 +258,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
 
   Real carried_at(const assembly::State& state, std::size_t j, const WellConnection& c) const {
     const auto u = state.x[carried_[2 * j + (c.face >= 0)]];
-    return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(u, c.row))();
+    return base::to_host(Kokkos::subview(u, c.row))();
   }
 
   Real flow_factor(const assembly::State& state, const WellConnection& c) const {

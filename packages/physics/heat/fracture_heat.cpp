@@ -2,6 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
+#include "base/host_table.hpp"
 #include "mesh/facets.hpp"
 #include "transport/face_plane.hpp"
 
@@ -96,13 +97,13 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
   }
 
   void initial_history(const std::vector<View<Real**>>& history) const override {
-    const auto kept = Kokkos::create_mirror_view(history[0]);
+    const base::HostTable<Real**> kept(history[0]);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       kept(f, 0) = start(f, parameters_.initial);
       kept(f, 1) = parameters_.faces[f].at_start() * density_at(start(f, parameters_.initial_pressure), kept(f, 0));
       kept(f, 2) = kept(f, 1);
     }
-    Kokkos::deep_copy(history[0], kept);
+    kept.on_device();
   }
 
   void commit(assembly::State& state) const override {
@@ -150,7 +151,7 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
   }
 
   std::vector<Real> temperatures(const assembly::State& state) const {
-    const auto T = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[temperature_]);
+    const auto T = base::to_host(state.x[temperature_]);
     std::vector<Real> values;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) values.push_back(T(mesh_->facets->fracture_face[f]));
     return values;
@@ -158,34 +159,30 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
 
   void set_conduction() {
     const LocalIndex n_faces = mesh_->n_fracture_faces();
-    View<Real**> T("T", n_faces, n * n);
-    const auto host = Kokkos::create_mirror_view(T);
+    const base::HostTable<Real**> T("T", n_faces, n * n);
     for (LocalIndex f = 0; f < n_faces; ++f) {
       const auto& face = parameters_.faces[f];
       const Plane plane(*mesh_, f, face.at_start() * face.conductivity, parameters_.scheme);
       for (int k = 0; k < n; ++k)
-        for (int j = 0; j < n; ++j) host(f, k * n + j) = plane.T[k][j];
+        for (int j = 0; j < n; ++j) T(f, k * n + j) = plane.T[k][j];
     }
-    Kokkos::deep_copy(T, host);
-    conduction_ = {.T = T, .lift = {}};
+    conduction_ = {.T = T.on_device(), .lift = {}};
   }
 
   void set_filling() {
     std::vector<Real> area, aperture, least;
     std::vector<LocalIndex> facet;
-    View<Real**> factor("factor", parameters_.faces.size(), expands ? 2 : 1);
-    const auto host = Kokkos::create_mirror_view(factor);
+    const base::HostTable<Real**> factors("factor", parameters_.faces.size(), expands ? 2 : 1);
     for (std::size_t f = 0; f < parameters_.faces.size(); ++f) {
       area.push_back(mesh_->fracture_faces[f].area);
       aperture.push_back(parameters_.faces[f].aperture);
       least.push_back(parameters_.faces[f].least);
       facet.push_back(mesh_->facets->fracture_face[f]);
-      host(f, 0) = parameters_.faces[f].capacity;
-      if (expands) host(f, 1) = -parameters_.expansion;
+      factors(f, 0) = parameters_.faces[f].capacity;
+      if (expands) factors(f, 1) = -parameters_.expansion;
     }
-    Kokkos::deep_copy(factor, host);
     filling_.area = assembly::to_device(area, "area");
-    filling_.factor = factor;
+    filling_.factor = factors.on_device();
     aperture_ = assembly::to_device(aperture, "aperture");
     least_ = assembly::to_device(least, "least aperture");
     facet_ = assembly::to_device(facet, "facet");

@@ -157,10 +157,10 @@ void add_expansion(const Setting& setting, std::vector<GivenTemperature> given, 
     if (scene.flow) of_pores = expansion_of_pores(scene, mesh);
   });
   if (Mechanics::is_in(scene) && is_any(mesh, of_rock))
-    modules.push_back(make_thermal_stress(mesh, {.expansion = std::move(of_rock),
-                                                 .elasticity = elasticity(scene, mesh),
-                                                 .initial = initial,
-                                                 .given = std::move(given)}));
+    modules.push_back(make_thermal_stress({.expansion = std::move(of_rock),
+                                           .elasticity = elasticity(scene, mesh),
+                                           .initial = initial,
+                                           .given = std::move(given)}));
   if (is_any(mesh, of_pores))
     modules.push_back(make_pore_expansion({.expansion = std::move(of_pores), .initial = initial}));
 }

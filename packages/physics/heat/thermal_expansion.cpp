@@ -2,11 +2,12 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
-#include "assembly/divergence.hpp"
 #include "assembly/geometry.hpp"
 #include "assembly/volume_work.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
+#include "physics/mechanics/displacements.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,19 +22,15 @@ namespace {
 
 class ThermalStress final : public assembly::Module, public assembly::Loads {
  public:
-  ThermalStress(const mesh::Mesh& mesh, ThermalStressParameters parameters)
-      : parameters_(std::move(parameters)),
-        fractures_(!mesh.fracture_names.empty()),
-        tips_(mesh.n_global_enriched > 0) {}
+  explicit ThermalStress(ThermalStressParameters parameters) : parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "thermal stress"; }
   std::string fingerprint() const override { return parameters_.initial.text(); }
 
-  assembly::Declaration declare(const mesh::Mesh&) const override {
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
-    d.couplings = {{Loop::cells, "displacement", {"temperature"}}};
-    if (fractures_) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"temperature"}});
-    if (tips_) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"temperature"}});
+    for (const auto& part : assembly::divergence_fields(mesh, displacements))
+      d.couplings.push_back({part.loop, part.field, {"temperature"}});
     d.outputs = {{{"thermal stress", "Pa", fields::Entity::cell, 1}, [this](const auto& s) { return stresses(s); }}};
     d.linear = true;
     return d;
@@ -42,32 +39,19 @@ class ThermalStress final : public assembly::Module, public assembly::Loads {
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
     temperature_ = context.field("temperature");
-    const auto stiffness = [&](LocalIndex cell) { return this->stiffness(cell); };
-    std::vector<Real> reference;
     for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-      reference.push_back(initial(c));
-      largest_ = std::max(largest_, this->stiffness(c));
+      reference_.push_back(initial(c));
+      largest_ = std::max(largest_, stiffness(c));
     }
-    const auto load = [&](Loop loop, const char* displacement, const View<Real**>& volume,
-                          const std::vector<Real>& start) {
+    const auto parts = assembly::divergence(*mesh_, displacements, [this](LocalIndex cell) { return stiffness(cell); });
+    for (const auto& part : parts) {
+      std::vector<Real> start;
+      for (const LocalIndex cell : part.cells) start.push_back(reference_[cell]);
       terms_.push_back(assembly::make_volume_load(context,
-                                                  {loop, context.field(displacement), temperature_, volume,
+                                                  {part.loop, context.field(part.field), temperature_, part.volume,
                                                    assembly::to_device(start, "temperature at the start")},
                                                   false));
-    };
-    load(Loop::cells, "displacement", assembly::cell_divergence(*mesh_, stiffness), reference);
-    if (fractures_) {
-      std::vector<Real> of_side;
-      for (const auto& [f, side] : assembly::fracture_sides(*mesh_))
-        of_side.push_back(reference[mesh_->fracture_faces[f].cell[side]]);
-      load(Loop::fracture_sides, "side bubble", assembly::bubble_divergence(*mesh_, stiffness), of_side);
     }
-    if (tips_) {
-      std::vector<Real> of_cell;
-      for (const LocalIndex cell : assembly::tip_cells(*mesh_)) of_cell.push_back(reference[cell]);
-      load(Loop::tip_cells, "tip displacement", assembly::tip_divergence(*mesh_, stiffness), of_cell);
-    }
-    reference_ = std::move(reference);
     find_sizes();
   }
 
@@ -119,14 +103,13 @@ class ThermalStress final : public assembly::Module, public assembly::Loads {
   }
 
   std::vector<Real> stresses(const assembly::State& state) const {
-    const auto T = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[temperature_]);
+    const auto T = base::to_host(state.x[temperature_]);
     std::vector<Real> values;
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) values.push_back(-stiffness(c) * (T(c) - reference_[c]));
     return values;
   }
 
   ThermalStressParameters parameters_;
-  bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
   int temperature_ = -1;
   std::vector<Real> reference_;  // [local cell] T_0, K
@@ -190,9 +173,9 @@ class PoreExpansion final : public assembly::Module, public assembly::InitialVal
   }
 
   void initial_history(const std::vector<View<Real**>>& history) const override {
-    const auto kept = Kokkos::create_mirror_view(history[0]);
+    const base::HostTable<Real**> kept(history[0]);
     for (std::size_t c = 0; c < kept.extent(0); ++c) kept(c, 0) = initial_[c];
-    Kokkos::deep_copy(history[0], kept);
+    kept.on_device();
   }
   void commit(assembly::State& state) const override {
     const auto kept = state.history[0];
@@ -220,8 +203,8 @@ class PoreExpansion final : public assembly::Module, public assembly::InitialVal
 
 }  // namespace
 
-std::unique_ptr<assembly::Module> make_thermal_stress(const mesh::Mesh& mesh, ThermalStressParameters parameters) {
-  return std::make_unique<ThermalStress>(mesh, std::move(parameters));
+std::unique_ptr<assembly::Module> make_thermal_stress(ThermalStressParameters parameters) {
+  return std::make_unique<ThermalStress>(std::move(parameters));
 }
 
 std::unique_ptr<assembly::Module> make_pore_expansion(PoreExpansionParameters parameters) {

@@ -28,7 +28,7 @@ struct ThermalStressParameters {
 /// Creates the module of thermal stress. It adds -(T_K - T_0) dV_K/du to the rows of all displacements, where V_K is
 /// the integral of 3 K alpha_T div u over a cell. The total stress receives -3 K alpha_T (T - T_0) I with the bulk
 /// modulus K, 3 K = 3 lambda + 2 G; in 2D for plane strain. Output: "thermal stress", this part (cells, Pa).
-std::unique_ptr<assembly::Module> make_thermal_stress(const mesh::Mesh& mesh, ThermalStressParameters parameters);
+std::unique_ptr<assembly::Module> make_thermal_stress(ThermalStressParameters parameters);
 
 struct PoreExpansionParameters {
   fields::Properties<Real>

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/host_table.hpp"
+
 namespace sprekk::physics {
 
 namespace {
@@ -43,20 +45,18 @@ laws::FluidResponse response_of_water(Real reference) {
   constexpr Real step = (warmest_water - coldest_water) / (n - 1), nearby = 0.01;
   const auto density = [&](Real T) { return water_density(T) / water_density(reference); };
   const auto mobility = [&](Real T) { return water_viscosity(reference) / water_viscosity(T); };
-  const View<Real**> knots("water", n, 4);
-  const auto host = Kokkos::create_mirror_view(knots);
+  const base::HostTable<Real**> knots("water", n, 4);
   for (int k = 0; k < n; ++k) {
     const Real T = coldest_water + k * step;
     const auto put = [&](int column, const auto& of) {
-      host(k, column) = of(T);
-      host(k, column + 1) = step * (of(T + nearby) - of(T - nearby)) / (2 * nearby);
+      knots(k, column) = of(T);
+      knots(k, column + 1) = step * (of(T + nearby) - of(T - nearby)) / (2 * nearby);
     };
     put(0, density);
     put(2, mobility);
   }
-  Kokkos::deep_copy(knots, host);
   laws::FluidResponse response{.reference = reference, .first = coldest_water, .distance = step};
-  response.knots = knots;
+  response.knots = knots.on_device();
   return response;
 }
 

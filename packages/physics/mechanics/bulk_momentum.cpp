@@ -4,6 +4,7 @@
 #include "assembly/capabilities.hpp"
 #include "assembly/load.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/elastic_cell.hpp"
@@ -97,7 +98,7 @@ class BulkMomentum final : public assembly::Module,
     fields::Vector owned(all_cells_->owned()), all(all_cells_->ghosted());
     Kokkos::deep_copy(values_of(owned), state.history[0]);
     all.doImport(owned, *all_cells_->import(), Tpetra::REPLACE);
-    const auto forces = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values_of(all));
+    const auto forces = base::to_host(values_of(all));
     carried_.set([&](const auto& rows) {
       for (LocalIndex c = 0; c < mesh_->n_cells(); ++c)
         for (int a = 0; a < n; ++a)
@@ -160,12 +161,12 @@ class BulkMomentum final : public assembly::Module,
           op.residual(cell, x, f);
           for (int k = 0; k < n * dim; ++k) forces(cell, k) += factor * f[k];
         });
-    const auto on_host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), stress);
+    const auto on_host = base::to_host(stress);
     const auto values = constitutive_stresses(state);
     for (std::size_t k = 0; k < values.size(); ++k) on_host(k / 6, k % 6) += factor * values[k];
     Kokkos::deep_copy(stress, on_host);
     if (parameters_.initial_stress.empty()) return;
-    const auto f = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), forces);
+    const auto f = base::to_host(forces);
     for (LocalIndex c = 0; c < n_owned; ++c)
       for_initial_forces(c, [&](int k, Real force) { f(c, k) += factor * force; });
     Kokkos::deep_copy(forces, f);
@@ -173,7 +174,7 @@ class BulkMomentum final : public assembly::Module,
 
  private:
   std::vector<Real> displacements(const assembly::State& state) const {
-    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
+    const auto u = base::to_host(state.x[displacement_]);
     std::vector<Real> values;
     for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
       for (int i = 0; i < dim; ++i) values.push_back(u(mesh_->free_node(node) * dim + i));
@@ -182,20 +183,18 @@ class BulkMomentum final : public assembly::Module,
   std::vector<Real> stresses(const assembly::State& state) const {
     auto values = constitutive_stresses(state);
     if (!parameters_.keeps_stress) return values;
-    const auto carried = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[1]);
+    const auto carried = base::to_host(state.history[1]);
     for (std::size_t k = 0; k < values.size(); ++k) values[k] += carried(k / 6, k % 6);
     return values;
   }
   /// Stress without the carried stress.
   std::vector<Real> constitutive_stresses(const assembly::State& state) const {
-    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
-    const auto q = tip_displacement_ < 0
-                       ? u
-                       : Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[tip_displacement_]);
+    const auto u = base::to_host(state.x[displacement_]);
+    const auto q = tip_displacement_ < 0 ? u : base::to_host(state.x[tip_displacement_]);
     std::vector<Real> values;
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c) add_stress(c, u, q, values);
     if (!split_) return values;
-    const auto p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[solid_pressure_]);
+    const auto p = base::to_host(state.x[solid_pressure_]);
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
       for (int k = 0; k < 3; ++k) values[6 * c + k] -= p(c);
     return values;

@@ -3,6 +3,7 @@
 
 #include "assembly/cell_nodes.hpp"
 #include "assembly/slots.hpp"
+#include "base/host_table.hpp"
 #include "laws/elasticity.hpp"
 
 namespace sprekk::physics {
@@ -140,8 +141,7 @@ struct ElasticCell {
 
   /// Integrals of dN_a/dxi_k dN_b/dxi_l over the reference cell, [node, node, component, component].
   static View<Real[n][n][dim][dim]> reference_products() {
-    const View<Real[n][n][dim][dim]> products("reference products");
-    const auto host = Kokkos::create_mirror_view(products);
+    const base::HostTable<Real[n][n][dim][dim]> products("reference products");
     using Rule = assembly::StiffnessQuadrature<shape>;
     Real xi[dim], dN[n][dim];
     for (int q = 0; q < Rule::n; ++q) {
@@ -150,10 +150,9 @@ struct ElasticCell {
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b)
           for (int k = 0; k < dim; ++k)
-            for (int l = 0; l < dim; ++l) host(a, b, k, l) += weight * dN[a][k] * dN[b][l];
+            for (int l = 0; l < dim; ++l) products(a, b, k, l) += weight * dN[a][k] * dN[b][l];
     }
-    Kokkos::deep_copy(products, host);
-    return products;
+    return products.on_device();
   }
 };
 

@@ -1,6 +1,7 @@
 #include "physics/mechanics/elastic_foundation.hpp"
 
 #include "assembly/kernel_module.hpp"
+#include "base/host_table.hpp"
 
 #include <fmt/ranges.h>
 
@@ -62,17 +63,15 @@ void for_each_sprung(const mesh::Mesh& mesh, const ElasticFoundationParameters& 
 template <mesh::Shape shape>
 View<Real***> boundary_mass(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters) {
   constexpr int n = mesh::n_face_nodes(shape);
-  const View<Real***> mass("mass", mesh.boundary_faces.size(), n, n);
-  const auto host = Kokkos::create_mirror_view(mass);
+  const base::HostTable<Real***> mass("mass", mesh.boundary_faces.size(), n, n);
   for_each_sprung(mesh, parameters, [&](std::size_t f, const auto& face) {
     const auto add = [&](const auto& N, Real area, const auto&) {
       for (int a = 0; a < n; ++a)
-        for (int b = 0; b < n; ++b) host(f, a, b) += area * N[a] * N[b];
+        for (int b = 0; b < n; ++b) mass(f, a, b) += area * N[a] * N[b];
     };
     assembly::for_each_face_point(mesh, face.cell, face.local_face, add);
   });
-  Kokkos::deep_copy(mass, host);
-  return mass;
+  return mass.on_device();
 }
 
 /// Components of the displacement with a spring, of local nodes.

@@ -2,6 +2,7 @@
 
 #include "assembly/capabilities.hpp"
 #include "assembly/geometry.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint_slopes.hpp"
 #include "mesh/extents.hpp"
@@ -108,7 +109,7 @@ class ElasticPlasticJump final : public assembly::Module,
   template <class Visit>
   void for_each_face(const assembly::State& state, const Visit& visit) const {
     const auto points = operators_->evaluate(at(state), state);
-    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points);
+    const auto host = base::to_host(points);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) visit(f, host(f));
   }
 
@@ -128,7 +129,7 @@ class ElasticPlasticJump final : public assembly::Module,
   /// Returns a function of the face with the history variables of the laws, on the host.
   auto kept_on_host(const assembly::State& state) const {
     Kokkos::View<Real**, Kokkos::LayoutRight, Kokkos::HostSpace> numbers;
-    if (parameters_.n_kept > 0) numbers = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[2]);
+    if (parameters_.n_kept > 0) numbers = base::to_host(state.history[2]);
     return [numbers](LocalIndex f) {
       if (numbers.extent(1) == 0) return laws::History();
       return laws::History{&numbers(f, 0), static_cast<long>(numbers.stride(1))};
@@ -137,15 +138,13 @@ class ElasticPlasticJump final : public assembly::Module,
 
   /// Shear compliance of the rock at a face of a fracture of size L: L/G of the softer side, m/Pa; on the device.
   View<Real*> softness() const {
-    View<Real*> all("softness", mesh_->n_owned_fracture_faces);
-    const auto host = Kokkos::create_mirror_view(all);
+    std::vector<Real> all(mesh_->n_owned_fracture_faces);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
       for (const LocalIndex cell : mesh_->fracture_faces[f].cell) {
         const Real G = elasticity(cell).G;
-        host(f) = std::max(host(f), single_size_[mesh_->fracture_faces[f].single] / G);
+        all[f] = std::max(all[f], single_size_[mesh_->fracture_faces[f].single] / G);
       }
-    Kokkos::deep_copy(all, host);
-    return all;
+    return assembly::to_device(all, "softness");
   }
   const laws::JointParameters& joint(LocalIndex f) const { return parameters_.joints.of_face(*mesh_, f); }
   const laws::Elasticity& elasticity(LocalIndex cell) const { return parameters_.elasticity.of_cell(*mesh_, cell); }
@@ -173,31 +172,29 @@ class ElasticPlasticJump final : public assembly::Module,
 template <int dim>
 ConstView<Real**> ElasticPlasticJump<dim>::initial_jump() const {
   if (parameters_.initial_stress.empty()) return {};
-  View<Real**> rest("initial jump", mesh_->n_owned_fracture_faces, dim);
-  const auto host = Kokkos::create_mirror_view(rest);
+  const base::HostTable<Real**> rest("initial jump", mesh_->n_owned_fracture_faces, dim);
   const auto jumps = initial_jumps(*mesh_, parameters_);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-    for (int k = 0; k < dim; ++k) host(f, k) = jumps[f][k];
-  Kokkos::deep_copy(rest, host);
-  return rest;
+    for (int k = 0; k < dim; ++k) rest(f, k) = jumps[f][k];
+  return rest.on_device();
 }
 
 /// Sets the traction of the initial stress on faces under compression.
 template <int dim>
 void ElasticPlasticJump<dim>::initial(const assembly::Rows& x) const {
-  const auto traction = Kokkos::create_mirror_view(x[fields_[2]]);
+  const base::HostTable<Real*> traction(x[fields_[2]]);
   const auto known = initial_tractions(*mesh_, parameters_);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
     for (int k = 0; k < dim; ++k) traction(f * dim + k) = known[f][0] < 0 ? known[f][k] : 0;
-  Kokkos::deep_copy(x[fields_[2]], traction);
+  traction.on_device();
 }
 
 template <int dim>
 void ElasticPlasticJump<dim>::initial_history(const std::vector<View<Real**>>& history) const {
-  const auto p = Kokkos::create_mirror_view(history[0]);
+  const base::HostTable<Real**> p(history[0]);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
     for (int k = 0; k < dim - 1; ++k) p(f, k) = joint(f).plastic_jump[k];
-  Kokkos::deep_copy(history[0], p);
+  p.on_device();
 }
 
 template <int dim>
@@ -220,15 +217,13 @@ void ElasticPlasticJump<dim>::set_points() {
   std::vector<laws::Joint> laws;
   for (const auto& joint : parameters_.joints.values) laws.push_back(joint.law);
   std::vector<int> number;
-  const View<Real***> frame("frame", mesh_->n_owned_fracture_faces, dim, dim);
-  const auto host = Kokkos::create_mirror_view(frame);
+  const base::HostTable<Real***> frame("frame", mesh_->n_owned_fracture_faces, dim, dim);
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
     number.push_back(parameters_.joints.number_of(f, mesh_->fracture_faces[f].fracture));
     for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < dim; ++i) host(f, k, i) = mesh_->fracture_faces[f].frame[k][i];
+      for (int i = 0; i < dim; ++i) frame(f, k, i) = mesh_->fracture_faces[f].frame[k][i];
   }
-  Kokkos::deep_copy(frame, host);
-  points_.frame = frame;
+  points_.frame = frame.on_device();
   laws_ = assembly::to_device(laws, "law");
   points_.law = laws_.data();
   points_.number = assembly::to_device(number, "number");
@@ -237,9 +232,7 @@ void ElasticPlasticJump<dim>::set_points() {
 /// Computes the augmentation, Young's modulus of the softer side, and the weights of the merit.
 template <int dim>
 void ElasticPlasticJump<dim>::set_sizes() {
-  std::vector<Real> augmentation;
-  merit_weight_ = View<Real*>("weight", mesh_->n_owned_fracture_faces * dim);
-  const auto weight = Kokkos::create_mirror_view(merit_weight_);
+  std::vector<Real> augmentation, weight;
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
     const auto& face = mesh_->fracture_faces[f];
     Real modulus = std::numeric_limits<Real>::max(), height = 0;  // height of the cells
@@ -249,9 +242,9 @@ void ElasticPlasticJump<dim>::set_sizes() {
     }
     modulus_.push_back(modulus);
     augmentation.push_back(parameters_.augmentation * modulus / size_[face.fracture]);
-    for (int i = 0; i < dim; ++i) weight(f * dim + i) = face.area * height / (10 * modulus);
+    weight.insert(weight.end(), dim, face.area * height / (10 * modulus));
   }
-  Kokkos::deep_copy(merit_weight_, weight);
+  merit_weight_ = assembly::to_device(weight, "weight");
   points_.augmentation = assembly::to_device(augmentation, "augmentation");
 }
 
@@ -275,7 +268,7 @@ template <int dim>
 void ElasticPlasticJump<dim>::step_errors(const assembly::State& begin, const assembly::State& end,
                                           fields::StepErrors& errors) const {
   if (dim == 2) return;
-  const auto before = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), begin.x[fields_[2]]);
+  const auto before = base::to_host(begin.x[fields_[2]]);
   std::vector<Real> sums(2, 0);  // of force times error, and of force
   for_each_face(end, [&](LocalIndex f, const Point& point) {
     const bool slides = point.state == ContactState::slip;
@@ -400,7 +393,7 @@ bool ElasticPlasticJump<dim>::symmetric(const assembly::State& state) const {
 template <int dim>
 void ElasticPlasticJump<dim>::for_each_jump(const assembly::State& state,
                                             const std::function<void(const JumpOfFace<dim>&)>& use) const {
-  const auto host = [&](int k) { return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.history[k]); };
+  const auto host = [&](int k) { return base::to_host(state.history[k]); };
   const bool has_kept = parameters_.n_kept > 0;
   const auto slid = host(1), runaway = host(has_kept ? 3 : 1);
   const auto kept = kept_on_host(state);

@@ -2,6 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
+#include "base/host_table.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/balanced_side.hpp"
 #include "physics/mechanics/bubble_stiffness.hpp"
@@ -79,8 +80,8 @@ class InterfaceTractionBalance final : public assembly::Module, public assembly:
     const bool stressed = !parameters_.initial_stress.empty(), constant = parameters_.body_force.constant_in_time();
     if ((parameters_.body_force.empty() && !stressed) || (loaded_ && constant)) return;
     if (stressed) op_->nodal = View<Real**>("nodal", op_->force.extent(0), n * dim);
-    const auto force = Kokkos::create_mirror_view(op_->force), nodal = Kokkos::create_mirror_view(op_->nodal);
-    Kokkos::deep_copy(force, 0.0);
+    const base::HostTable<Real**> force(op_->force), nodal(op_->nodal);
+    Kokkos::deep_copy(force.host(), 0.0);
     const auto sides = assembly::fracture_sides(*mesh_);
     Real db[dim];
     for (std::size_t s = 0; s < sides.size(); ++s) {
@@ -93,11 +94,11 @@ class InterfaceTractionBalance final : public assembly::Module, public assembly:
               force(s, i) += volume * b * parameters_.body_force(i, face.cell[sides[s][1]], x, t);
           });
       if (stressed)
-        add_initial_stress(face, sides[s][1], Kokkos::subview(force, s, Kokkos::ALL),
-                           Kokkos::subview(nodal, s, Kokkos::ALL));
+        add_initial_stress(face, sides[s][1], Kokkos::subview(force.host(), s, Kokkos::ALL),
+                           Kokkos::subview(nodal.host(), s, Kokkos::ALL));
     }
-    Kokkos::deep_copy(op_->force, force);
-    Kokkos::deep_copy(op_->nodal, nodal);
+    force.on_device();
+    nodal.on_device();
     loaded_ = true;
   }
 
@@ -114,11 +115,10 @@ class InterfaceTractionBalance final : public assembly::Module, public assembly:
     const auto& fluid = parameters_.fluid_pressure;
     if (fluid.empty() || (op_->pressure.extent(0) > 0 && fluid.constant_in_time())) return;
     const auto sides = assembly::fracture_sides(*mesh_);
-    if (op_->pressure.extent(0) == 0) op_->pressure = View<Real*>("pressure", sides.size());
-    const auto pressure = Kokkos::create_mirror_view(op_->pressure);
-    for (std::size_t s = 0; s < sides.size(); ++s)
-      pressure(s) = mean_fluid_pressure(fluid, *mesh_, mesh_->fracture_faces[sides[s][0]], sides[s][1], t);
-    Kokkos::deep_copy(op_->pressure, pressure);
+    std::vector<Real> pressure;
+    for (const auto& [f, side] : sides)
+      pressure.push_back(mean_fluid_pressure(fluid, *mesh_, mesh_->fracture_faces[f], side, t));
+    op_->pressure = assembly::to_device(pressure, "pressure");
   }
 
   /// Adds the loads of the initial stress on the bubble and the nodes of one side.
@@ -155,16 +155,16 @@ class InterfaceTractionBalance final : public assembly::Module, public assembly:
     op_ = std::make_unique<Op>(sides.size());
     std::vector<int> n_faces(mesh_->n_cells(), 0);  // number m of fracture faces of each cell
     for (const auto& [f, side] : sides) ++n_faces[mesh_->fracture_faces[f].cell[side]];
-    const auto coupling = Kokkos::create_mirror_view(op_->coupling), frame = Kokkos::create_mirror_view(op_->frame);
-    const auto stiffness = Kokkos::create_mirror_view(op_->stiffness), bubble = Kokkos::create_mirror_view(op_->bubble);
-    const auto push = Kokkos::create_mirror_view(op_->push);
+    const base::HostTable<Real***> coupling(op_->coupling), frame(op_->frame);
+    const base::HostTable<Real**> push(op_->push);
+    const base::HostTable<Real*> stiffness(op_->stiffness), bubble(op_->bubble);
     for (std::size_t s = 0; s < sides.size(); ++s) {
       const auto& face = mesh_->fracture_faces[sides[s][0]];
       const int side = sides[s][1], local_face = face.local_face[side];
       const LocalIndex cell = face.cell[side];
       const Real signed_area = side == mesh::plus ? face.area : -face.area;
       stiffness(s) = n_faces[cell] * bubble_stiffness<shape>(*mesh_, cell, local_face, law(cell));
-      integrate(cell, local_face, Kokkos::subview(coupling, s, Kokkos::ALL, Kokkos::ALL));
+      integrate(cell, local_face, Kokkos::subview(coupling.host(), s, Kokkos::ALL, Kokkos::ALL));
       bubble(s) = signed_area * assembly::bubble_mean(*mesh_, cell, local_face);
       const auto shares = assembly::mean_shares(*mesh_, cell, local_face);
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
@@ -172,11 +172,11 @@ class InterfaceTractionBalance final : public assembly::Module, public assembly:
       for (int k = 0; k < dim; ++k)
         for (int i = 0; i < dim; ++i) frame(s, k, i) = face.frame[k][i];
     }
-    Kokkos::deep_copy(op_->coupling, coupling);
-    Kokkos::deep_copy(op_->frame, frame);
-    Kokkos::deep_copy(op_->stiffness, stiffness);
-    Kokkos::deep_copy(op_->bubble, bubble);
-    Kokkos::deep_copy(op_->push, push);
+    coupling.on_device();
+    frame.on_device();
+    push.on_device();
+    stiffness.on_device();
+    bubble.on_device();
   }
 
   const laws::Elasticity& law(LocalIndex cell) const { return parameters_.elasticity.of_cell(*mesh_, cell); }

@@ -2,6 +2,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/host_table.hpp"
 #include "physics/mechanics/joint_face.hpp"
 
 #include <type_traits>
@@ -83,8 +84,7 @@ class OperatorsOf final : public JointOperators<Face::dim> {
   void set_shares(const mesh::Mesh& mesh) {
     const LocalIndex n_faces = mesh.n_owned_fracture_faces;
     constexpr bool tips = Face::Columns::n > 3;
-    const View<Real**> share("share", n_faces, n), tip_share("tip share", tips ? n_faces : 0, 2 * n);
-    const auto share_host = Kokkos::create_mirror_view(share), tip_host = Kokkos::create_mirror_view(tip_share);
+    const base::HostTable<Real**> share("share", n_faces, n), tip_share("tip share", tips ? n_faces : 0, 2 * n);
     std::vector<Real> bubble_mean;
     const auto rules = std::make_shared<assembly::TipRules>();
     for (LocalIndex f = 0; f < n_faces; ++f) {
@@ -92,17 +92,15 @@ class OperatorsOf final : public JointOperators<Face::dim> {
       const LocalIndex cell = face.cell[mesh::minus];
       const int local_face = face.local_face[mesh::minus];
       const auto shares = assembly::mean_shares(mesh, cell, local_face);
-      for (int k = 0; k < n; ++k) share_host(f, k) = shares[k];
+      for (int k = 0; k < n; ++k) share(f, k) = shares[k];
       bubble_mean.push_back(assembly::bubble_mean(mesh, cell, local_face));
       for (int side = 0; side < 2 && tips; ++side) {
         const auto of_tips = tip_shares(mesh, face, side, rules);
-        for (int k = 0; k < n; ++k) tip_host(f, side * n + k) = of_tips[k];
+        for (int k = 0; k < n; ++k) tip_share(f, side * n + k) = of_tips[k];
       }
     }
-    Kokkos::deep_copy(share, share_host);
-    Kokkos::deep_copy(tip_share, tip_host);
-    face_.share = share;
-    face_.tip_share = tip_share;
+    face_.share = share.on_device();
+    face_.tip_share = tip_share.on_device();
     face_.bubble_mean = assembly::to_device(bubble_mean, "bubble mean");
   }
 

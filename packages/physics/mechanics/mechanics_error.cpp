@@ -2,6 +2,7 @@
 
 #include "assembly/prescribed_error.hpp"
 #include "assembly/system.hpp"
+#include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "physics/comparison.hpp"
@@ -73,7 +74,7 @@ class MechanicsError final : public estimate::MeshError, estimate::GoalErrors {
     const auto conditions =
         dirichlet_conditions(setting_.scene.boundary_conditions, {}, names_of(mesh()), "displacement");
     const auto missed = assembly::prescribed_error(mesh(), *layouts_[nodal], conditions, t);
-    const auto constrained = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), system_.constrained(nodes));
+    const auto constrained = base::to_host(system_.constrained(nodes));
     const auto from = missed.getLocalViewHost(Tpetra::Access::ReadOnly);
     const auto to = right_side[nodes]->getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < constrained.extent(0); ++i)

@@ -72,7 +72,7 @@ std::vector<std::unique_ptr<assembly::Module>> make_mechanics(const mesh::Mesh& 
     modules.push_back(make_spring_origin(make_elastic_foundation(mesh, foundation), module_name(name, mesh, foundation),
                                          foundation.stiffness, bulk.keeps_stress));
   if (!parameters.solid_modulus.values.empty())
-    modules.push_back(make_solid_pressure(mesh, {.elasticity = bulk.elasticity, .modulus = parameters.solid_modulus}));
+    modules.push_back(make_solid_pressure({.elasticity = bulk.elasticity, .modulus = parameters.solid_modulus}));
   if (mesh.fracture_names.empty()) return modules;
   modules.push_back(make_interface_traction_balance(mesh.shape, {.elasticity = bulk.elasticity,
                                                                  .body_force = bulk.body_force,

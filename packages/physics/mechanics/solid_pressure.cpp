@@ -1,12 +1,12 @@
 #include "physics/mechanics/solid_pressure.hpp"
 
 #include "assembly/capabilities.hpp"
-#include "assembly/divergence.hpp"
 #include "assembly/geometry.hpp"
 #include "assembly/term.hpp"
 #include "assembly/volume_work.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/mechanics/displacements.hpp"
 
 #include <algorithm>
 #include <array>
@@ -79,10 +79,7 @@ std::array<Real, 2> bubble_of(const mesh::Mesh& mesh, LocalIndex cell, int local
 
 class SolidPressure final : public assembly::Module, public assembly::RowWeights {
  public:
-  SolidPressure(const mesh::Mesh& mesh, SolidPressureParameters parameters)
-      : parameters_(std::move(parameters)),
-        fractures_(!mesh.fracture_names.empty()),
-        tips_(mesh.n_global_enriched > 0) {}
+  explicit SolidPressure(SolidPressureParameters parameters) : parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "solid pressure"; }
 
@@ -94,13 +91,10 @@ class SolidPressure final : public assembly::Module, public assembly::RowWeights
     d.unknowns = {p};
     d.scales = {{"solid pressure", 0}};
     d.relations = {{"solid pressure", 1, "stress"}};
-    const auto work = [&](Loop loop, const char* displacement) {
-      d.couplings.push_back({loop, displacement, {"solid pressure"}});
-      d.couplings.push_back({loop, "solid pressure", {displacement}});
-    };
-    work(Loop::cells, "displacement");
-    if (fractures_) work(Loop::fracture_sides, "side bubble");
-    if (tips_) work(Loop::tip_cells, "tip displacement");
+    for (const auto& part : assembly::divergence_fields(mesh, displacements)) {
+      d.couplings.push_back({part.loop, part.field, {"solid pressure"}});
+      d.couplings.push_back({part.loop, "solid pressure", {part.field}});
+    }
     for (const auto loop : {Loop::cells, Loop::neighbours})
       d.couplings.push_back({loop, "solid pressure", {"solid pressure"}});
     d.schur = {"solid pressure"};
@@ -110,19 +104,13 @@ class SolidPressure final : public assembly::Module, public assembly::RowWeights
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    const int u = context.field("displacement");
     p_ = context.field("solid pressure");
     const auto pressed = [this](LocalIndex cell) { return modulus(cell) > 0 ? 1 : 0; };
     add<PressedCell>(context, Loop::cells, {p_}, pressed_cells());
     add<BubbleBetween>(context, Loop::neighbours, {p_}, bubbles_between());
-    const auto work = [&](Loop loop, int block, const View<Real**>& volume) {
+    for (const auto& part : assembly::divergence(*mesh_, displacements, pressed))  // rate -1: symmetric
       terms_.push_back(
-          assembly::make_volume_work(context, {loop, block, p_, volume}, false, -1));  // rate -1: symmetric
-    };
-    work(Loop::cells, u, assembly::cell_divergence(*mesh_, pressed));
-    if (fractures_)
-      work(Loop::fracture_sides, context.field("side bubble"), assembly::bubble_divergence(*mesh_, pressed));
-    if (tips_) work(Loop::tip_cells, context.field("tip displacement"), assembly::tip_divergence(*mesh_, pressed));
+          assembly::make_volume_work(context, {part.loop, context.field(part.field), p_, part.volume}, false, -1));
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -202,7 +190,6 @@ class SolidPressure final : public assembly::Module, public assembly::RowWeights
   }
 
   SolidPressureParameters parameters_;
-  bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
   int p_ = -1;
   ConstView<Real*> schur_;       // [owned cell] |K|/(lambda_0 + 2 G), m^3/Pa
@@ -219,8 +206,8 @@ VolumetricSplit::VolumetricSplit(const laws::Elasticity& law, int order) : elast
   modulus = law.lambda - elasticity.lambda;
 }
 
-std::unique_ptr<assembly::Module> make_solid_pressure(const mesh::Mesh& mesh, SolidPressureParameters parameters) {
-  return std::make_unique<SolidPressure>(mesh, std::move(parameters));
+std::unique_ptr<assembly::Module> make_solid_pressure(SolidPressureParameters parameters) {
+  return std::make_unique<SolidPressure>(std::move(parameters));
 }
 
 }  // namespace sprekk::physics

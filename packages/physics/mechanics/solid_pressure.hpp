@@ -32,6 +32,6 @@ struct VolumetricSplit {
 /// is used (Rodrigo et al. 2018), without coupling to displacements. On simplices of order 1, which have the fewest
 /// displacements per pressure, this energy is divided by the number of faces of a cell. See
 /// docs/model/discretisation.md, Nearly incompressible rock.
-std::unique_ptr<assembly::Module> make_solid_pressure(const mesh::Mesh& mesh, SolidPressureParameters parameters);
+std::unique_ptr<assembly::Module> make_solid_pressure(SolidPressureParameters parameters);
 
 }  // namespace sprekk::physics

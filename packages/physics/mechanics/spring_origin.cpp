@@ -2,6 +2,7 @@
 
 #include "assembly/bound_module.hpp"
 #include "assembly/load.hpp"
+#include "base/host_table.hpp"
 
 #include <utility>
 
@@ -82,17 +83,15 @@ class SpringOrigin final : public assembly::Module,
   /// Returns value(k, u, history) at springs, [owned node, component]; 0 elsewhere.
   template <class Value>
   View<Real**> of_sprung(const assembly::State& state, const Value& value) const {
-    const View<Real**> result("of springs", layout_->n_owned_entities(), dim_);
+    const base::HostTable<Real**> result("of springs", layout_->n_owned_entities(), dim_);
     const View<Real**> before = keeps_ ? state.history.back() : View<Real**>("none", result.extent(0), dim_);
-    const auto values = Kokkos::create_mirror_view(result);
-    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[displacement_]);
-    const auto kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), before);
+    const auto u = base::to_host(state.x[displacement_]);
+    const auto kept = base::to_host(before);
     const auto sprung = springs_.supporting->supports().value();
     for (const auto& [unknown, i] : sprung)
       if (const LocalIndex node = unknown / dim_; unknown < layout_->n_owned())
-        values(node, i) = value(stiffness_[i], u(unknown), kept(node, i));
-    Kokkos::deep_copy(result, values);
-    return result;
+        result(node, i) = value(stiffness_[i], u(unknown), kept(node, i));
+    return result.on_device();
   }
 
   assembly::BoundModule springs_;

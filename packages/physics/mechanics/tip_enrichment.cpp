@@ -4,6 +4,7 @@
 #include "assembly/capabilities.hpp"
 #include "assembly/load.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/host_table.hpp"
 #include "mesh/extents.hpp"
 #include "physics/mechanics/balanced_side.hpp"
 
@@ -129,7 +130,7 @@ class TipEnrichment final : public assembly::Module, public assembly::Loads {
 
   /// Values at all nodes; zero without tip functions.
   std::vector<Real> shown(const assembly::State& state) const {
-    const auto q = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state.x[q_]);
+    const auto q = base::to_host(state.x[q_]);
     std::vector<Real> values;
     for (LocalIndex node = 0; node < mesh_->n_nodes(); ++node)
       for (int i = 0; i < dim; ++i)
@@ -155,8 +156,7 @@ class TipEnrichment final : public assembly::Module, public assembly::Loads {
 
   void build_cells() {
     constexpr int size = n * dim;
-    cell_ = {View<Real***>("mixed", cell_of_.size(), size, size), View<Real***>("own", cell_of_.size(), size, size)};
-    const auto mixed = Kokkos::create_mirror_view(cell_.mixed), own = Kokkos::create_mirror_view(cell_.own);
+    const base::HostTable<Real***> mixed("mixed", cell_of_.size(), size, size), own("own", cell_of_.size(), size, size);
     for (std::size_t c = 0; c < cell_of_.size(); ++c) {
       const auto& elasticity = law(cell_of_[c]);
       Real mixed_moment[size][size] = {}, own_moment[size][size] = {};  // integrals of grad_i grad_j
@@ -174,20 +174,19 @@ class TipEnrichment final : public assembly::Module, public assembly::Loads {
       });
       for (int a = 0; a < n; ++a)
         for (int b = 0; b < n; ++b) {
-          set_stiffness(elasticity, mixed_moment, a, b, Kokkos::subview(mixed, c, Kokkos::ALL, Kokkos::ALL));
-          set_stiffness(elasticity, own_moment, a, b, Kokkos::subview(own, c, Kokkos::ALL, Kokkos::ALL));
+          set_stiffness(elasticity, mixed_moment, a, b, Kokkos::subview(mixed.host(), c, Kokkos::ALL, Kokkos::ALL));
+          set_stiffness(elasticity, own_moment, a, b, Kokkos::subview(own.host(), c, Kokkos::ALL, Kokkos::ALL));
         }
     }
-    Kokkos::deep_copy(cell_.mixed, mixed);
-    Kokkos::deep_copy(cell_.own, own);
+    cell_ = {mixed.on_device(), own.on_device()};
   }
 
   void build_sides() {
     const auto selected = assembly::tip_sides(*mesh_);
     const auto all = assembly::fracture_sides(*mesh_);
     side_ = BalancedSide<shape>(selected.size());
-    const auto coupling = Kokkos::create_mirror_view(side_.coupling), frame = Kokkos::create_mirror_view(side_.frame);
-    const auto push = Kokkos::create_mirror_view(side_.push);
+    const base::HostTable<Real***> coupling(side_.coupling), frame(side_.frame);
+    const base::HostTable<Real**> push(side_.push);
     for (std::size_t s = 0; s < selected.size(); ++s) {
       const auto [f, side] = all[selected[s]];
       const auto& face = mesh_->fracture_faces[f];
@@ -209,9 +208,9 @@ class TipEnrichment final : public assembly::Module, public assembly::Loads {
       for (int k = 0; k < dim; ++k)
         for (int i = 0; i < dim; ++i) frame(s, k, i) = face.frame[k][i];
     }
-    Kokkos::deep_copy(side_.coupling, coupling);
-    Kokkos::deep_copy(side_.frame, frame);
-    Kokkos::deep_copy(side_.push, push);
+    coupling.on_device();
+    frame.on_device();
+    push.on_device();
   }
 
   /// Owned row of component i of an enriched node of a cell; -1: none.
@@ -247,7 +246,7 @@ class TipEnrichment final : public assembly::Module, public assembly::Loads {
   void add_loads_of_sides(Real t, const Host& load) const {
     const auto selected = assembly::tip_sides(*mesh_);
     const auto all = assembly::fracture_sides(*mesh_);
-    const auto push = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), side_.push);
+    const auto push = base::to_host(side_.push);
     for (std::size_t s = 0; s < selected.size(); ++s) {
       const auto [f, side] = all[selected[s]];
       if (!parameters_.initial_stress.empty()) add_deviation(f, side, load);

@@ -2,9 +2,10 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
-#include "assembly/divergence.hpp"
 #include "base/check.hpp"
+#include "base/host_table.hpp"
 #include "fields/properties.hpp"
+#include "physics/mechanics/displacements.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,9 +90,8 @@ class Given final : public GivenPressure, public assembly::Loads {
 
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
-    d.couplings = {{Loop::cells, "displacement", {"displacement"}}};
-    if (fractures_) d.couplings.push_back({Loop::fracture_sides, "side bubble", {"side bubble"}});
-    if (tips_) d.couplings.push_back({Loop::tip_cells, "tip displacement", {"tip displacement"}});
+    for (const auto& part : assembly::divergence_fields(mesh, displacements))
+      d.couplings.push_back({part.loop, part.field, {part.field}});
     d.outputs = {{{"gained pore volume", mesh.dim() == 2 ? "m^2" : "m^3", fields::Entity::cell, 1},
                   [this](const auto& state) { return volumes(state, true); }}};
     if (fractures_)
@@ -108,32 +108,24 @@ class Given final : public GivenPressure, public assembly::Loads {
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
     const auto biot = [&](LocalIndex cell) { return parameters_.biot.of_cell(*mesh_, cell); };
-    const auto sides = assembly::fracture_sides(*mesh_);
-    std::vector<LocalIndex> cells, faces, cells_of_sides, faces_of_tips;
-    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) cells.push_back(c);
-    for (const auto& [f, side] : sides) {
-      faces.push_back(f);
-      cells_of_sides.push_back(mesh_->fracture_faces[f].cell[side]);
-    }
+    std::vector<LocalIndex> faces, faces_of_tips;
+    for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) faces.push_back(f);
     for (const LocalIndex s : assembly::tip_sides(*mesh_)) faces_of_tips.push_back(faces[s]);
-    const int u = context.field("displacement");
     mesh::for_shape(mesh_->shape, [&](auto shape) {
       using Nodes = Slot<mesh::n_nodes(shape()), mesh::dimension(shape())>;
       using Bubble = Slot<1, mesh::dimension(shape())>;
-      add<Push<Nodes>>(true, context, Loop::cells, {u}, assembly::cell_divergence(*mesh_, biot), cells);
-      if (fractures_) {
-        const int beta = context.field("side bubble");
-        add<Push<Bubble>>(true, context, Loop::fracture_sides, {beta}, assembly::bubble_divergence(*mesh_, biot),
-                          cells_of_sides);
-        add<Push<Nodes, Bubble>>(false, context, Loop::fracture_sides, {u, beta}, assembly::side_volumes(*mesh_),
-                                 faces);
-      }
-      if (tips_) {
-        const int q = context.field("tip displacement");
-        add<Push<Nodes>>(true, context, Loop::tip_cells, {q}, assembly::tip_divergence(*mesh_, biot),
-                         assembly::tip_cells(*mesh_));
-        add<Push<Nodes>>(false, context, Loop::tip_sides, {q}, assembly::tip_side_volumes(*mesh_), faces_of_tips);
-      }
+      for (const auto& part : assembly::divergence(*mesh_, displacements, biot))
+        if (part.loop == Loop::fracture_sides)
+          add<Push<Bubble>>(true, context, part.loop, {context.field(part.field)}, part.volume, part.cells);
+        else
+          add<Push<Nodes>>(true, context, part.loop, {context.field(part.field)}, part.volume, part.cells);
+      if (fractures_)
+        add<Push<Nodes, Bubble>>(false, context, Loop::fracture_sides,
+                                 {context.field("displacement"), context.field("side bubble")},
+                                 assembly::side_volumes(*mesh_), faces);
+      if (tips_)
+        add<Push<Nodes>>(false, context, Loop::tip_sides, {context.field("tip displacement")},
+                         assembly::tip_side_volumes(*mesh_), faces_of_tips);
     });
     set(std::vector<Real>(mesh_->n_cells(), 0), std::vector<Real>(mesh_->n_fracture_faces(), 0));
   }
@@ -163,7 +155,7 @@ class Given final : public GivenPressure, public assembly::Loads {
     const View<Real*> sums("volumes", of_rock ? mesh_->n_cells() : mesh_->n_fracture_faces());
     for (const auto& part : parts_)
       if (part->is_of_rock == of_rock) part->add_volumes(state, sums);
-    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), sums);
+    const auto host = base::to_host(sums);
     return {host.data(), host.data() + (of_rock ? mesh_->n_owned_cells : mesh_->n_owned_fracture_faces)};
   }
 

@@ -1,12 +1,12 @@
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 
 #include "assembly/capabilities.hpp"
-#include "assembly/divergence.hpp"
 #include "assembly/geometry.hpp"
 #include "assembly/term.hpp"
 #include "assembly/volume_work.hpp"
 #include "mesh/extents.hpp"
 #include "mesh/facets.hpp"
+#include "physics/mechanics/displacements.hpp"
 #include "transport/hybrid_diffusion.hpp"
 
 #include <algorithm>
@@ -67,28 +67,23 @@ class PoroelasticCoupling final : public assembly::Module,
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
     const Real area = mesh::typical_face_area(mesh);
-    const auto work = [&](Loop loop, const char* displacement) {
-      d.couplings.push_back({loop, displacement, {"pressure"}});
-      d.couplings.push_back({loop, "pressure", {displacement}});
-    };
+    for (const auto& part : assembly::divergence_fields(mesh, displacements)) {
+      d.couplings.push_back({part.loop, part.field, {"pressure"}});
+      d.couplings.push_back({part.loop, "pressure", {part.field}});
+    }
     const auto open = [&](Loop loop, const char* displacement) {
       d.couplings.push_back({loop, displacement, {"face pressure"}});
       d.couplings.push_back({loop, "widening", {displacement, "widening"}});
     };
-    work(Loop::cells, "displacement");
     if (fractures_) {
       assembly::Unknown widening{
           {"widening", fields::Entity::fracture_face, 1, "m"}, "displacement", {{"displacement", area}}};
       widening.local_group = "fracture face";
       d.unknowns = {widening};
-      work(Loop::fracture_sides, "side bubble");
       open(Loop::fracture_sides, "displacement");
       open(Loop::fracture_sides, "side bubble");
     }
-    if (tips_) {
-      work(Loop::tip_cells, "tip displacement");
-      open(Loop::tip_sides, "tip displacement");
-    }
+    if (tips_) open(Loop::tip_sides, "tip displacement");
     for (const char* row : {"pressure", "face pressure"}) {
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
       d.sizes.push_back({row, {"displacement", area, true}});
@@ -159,9 +154,6 @@ class PoroelasticCoupling final : public assembly::Module,
   }
   Real biot(LocalIndex cell) const { return parameters_.biot.of_cell(*mesh_, cell); }
 
-  void add_cells(const assembly::Context& context);
-  void add_work(const assembly::Context& context, Loop loop, const char* displacement, const View<Real**>& volume,
-                const std::vector<Real>& reference);
   void add_stabilisation(const assembly::Context& context);
   void add_sides(const assembly::Context& context);
   void add_tips(const assembly::Context& context);
@@ -178,8 +170,20 @@ class PoroelasticCoupling final : public assembly::Module,
 void PoroelasticCoupling::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
   pressures_ = {context.field("pressure"), context.field("face pressure")};
-  add_cells(context);
-  add_stabilisation(context);
+  std::vector<Real> schur;
+  for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
+    schur.push_back(parameters_.stabilisation.softness[c] *
+                    assembly::cell_mean(*mesh_, c, [](const auto&) { return 0; })[0]);
+  schur_ = assembly::to_device(schur, "schur");
+  for (const auto& part : assembly::divergence(*mesh_, displacements, [this](LocalIndex c) { return biot(c); })) {
+    std::vector<Real> reference;
+    for (const LocalIndex cell : part.cells) reference.push_back(mean_initial(cell));
+    rates_.push_back(assembly::make_volume_work(context,
+                                                {part.loop, context.field(part.field), pressures_[0], part.volume,
+                                                 assembly::to_device(reference, "initial pressure")},
+                                                true));
+    if (part.loop == Loop::cells) add_stabilisation(context);
+  }
   if (fractures_) add_sides(context);
   if (tips_) add_tips(context);
 }
@@ -187,26 +191,6 @@ void PoroelasticCoupling::bind(const assembly::Context& context) {
 void PoroelasticCoupling::jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
   for (const auto& term : rates_) term.add_jacobian(state, J);
   for (const auto& term : openings_) term.add_jacobian(state, J);
-}
-
-void PoroelasticCoupling::add_cells(const assembly::Context& context) {
-  std::vector<Real> reference, schur;
-  for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
-    const auto [volume, mean] = assembly::cell_mean(*mesh_, c, [&](const auto& x) { return initial(x); });
-    reference.push_back(mean);
-    if (c < mesh_->n_owned_cells) schur.push_back(parameters_.stabilisation.softness[c] * volume);
-  }
-  schur_ = assembly::to_device(schur, "schur");
-  const auto volume = assembly::cell_divergence(*mesh_, [&](LocalIndex cell) { return biot(cell); });
-  add_work(context, Loop::cells, "displacement", volume, reference);
-}
-
-void PoroelasticCoupling::add_work(const assembly::Context& context, Loop loop, const char* displacement,
-                                   const View<Real**>& volume, const std::vector<Real>& reference) {
-  rates_.push_back(assembly::make_volume_work(
-      context,
-      {loop, context.field(displacement), pressures_[0], volume, assembly::to_device(reference, "initial pressure")},
-      true));
 }
 
 void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
@@ -225,13 +209,8 @@ void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
 
 void PoroelasticCoupling::add_sides(const assembly::Context& context) {
   const int u = context.field("displacement"), beta = context.field("side bubble"), b = context.field("widening");
-  std::vector<Real> reference, halves;
-  for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) {
-    reference.push_back(mean_initial(mesh_->fracture_faces[f].cell[side]));
-    halves.push_back(mesh_->fracture_faces[f].area / 2);
-  }
-  const auto volume = assembly::bubble_divergence(*mesh_, [&](LocalIndex cell) { return biot(cell); });
-  add_work(context, Loop::fracture_sides, "side bubble", volume, reference);
+  std::vector<Real> halves;
+  for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) halves.push_back(mesh_->fracture_faces[f].area / 2);
   openings_.push_back(mesh::for_shape(mesh_->shape, [&](auto shape) {
     constexpr int dim = mesh::dimension(shape());
     const Opening<Slot<mesh::n_nodes(shape()), dim>, Slot<1, dim>> op{assembly::side_volumes(*mesh_),
@@ -243,10 +222,6 @@ void PoroelasticCoupling::add_sides(const assembly::Context& context) {
 
 void PoroelasticCoupling::add_tips(const assembly::Context& context) {
   const int q = context.field("tip displacement"), b = context.field("widening");
-  std::vector<Real> reference;
-  for (const LocalIndex cell : assembly::tip_cells(*mesh_)) reference.push_back(mean_initial(cell));
-  const auto volume = assembly::tip_divergence(*mesh_, [&](LocalIndex cell) { return biot(cell); });
-  add_work(context, Loop::tip_cells, "tip displacement", volume, reference);
   const auto of_sides = assembly::tip_side_volumes(*mesh_);
   const auto part = assembly::to_device(std::vector<Real>(of_sides.extent(0), 0), "none of the area");
   openings_.push_back(mesh::for_corners(mesh_->shape, [&](auto shape) {
