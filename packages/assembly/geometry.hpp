@@ -7,7 +7,6 @@
 
 #include <array>
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace sprekk::assembly {

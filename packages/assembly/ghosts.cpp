@@ -2,8 +2,6 @@
 
 #include "assembly/rows.hpp"
 
-#include <utility>
-
 namespace sprekk::assembly {
 
 Ghosts::Ghosts(const Structure& structure) : structure_(structure) {

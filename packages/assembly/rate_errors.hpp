@@ -5,7 +5,6 @@
 #include "fields/layout.hpp"
 #include "fields/step_error.hpp"
 
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -22,7 +22,6 @@ class Bounds {
   Bounds& size(std::size_t n) { return size_ = n, *this; }
 
   bool contains(Real value) const;
-  bool allows_infinity() const { return infinite_; }
   std::optional<std::size_t> size() const { return size_; }
   const std::string& word() const { return word_; }
 

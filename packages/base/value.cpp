@@ -1,7 +1,6 @@
 #include "base/value.hpp"
 
 #include <Teuchos_Array.hpp>
-#include <limits>
 #include <type_traits>
 
 #include "base/check.hpp"

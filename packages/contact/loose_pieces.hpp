@@ -6,11 +6,9 @@
 #include "fields/layout.hpp"
 #include "fields/types.hpp"
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace sprekk::contact {

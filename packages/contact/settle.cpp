@@ -4,7 +4,6 @@
 #include "base/over_ranks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace sprekk::contact {

@@ -4,7 +4,6 @@
 #include "base/check.hpp"
 #include "laboratory/point.hpp"
 #include "laws/joint_slopes.hpp"
-#include "physics/mechanics/elastic_plastic_jump.hpp"
 
 #include <Sacado.hpp>
 #include <Teuchos_LAPACK.hpp>

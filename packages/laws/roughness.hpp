@@ -5,8 +5,6 @@
 #include "laws/piecewise_linear.hpp"
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 namespace sprekk::laws {
 

@@ -1,7 +1,6 @@
 // Summary of a mesh: sizes, quality, intersections of fractures.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 

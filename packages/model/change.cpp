@@ -3,7 +3,6 @@
 #include "base/xml.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 namespace sprekk::model {

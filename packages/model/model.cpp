@@ -13,8 +13,6 @@
 #include "model/scene_check.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace sprekk::model {
 

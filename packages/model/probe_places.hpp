@@ -4,7 +4,6 @@
 #include "fields/layout.hpp"
 #include "mesh/facets.hpp"
 
-#include <string>
 #include <vector>
 
 namespace sprekk::model {

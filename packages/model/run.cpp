@@ -16,10 +16,8 @@
 #include <fmt/ranges.h>
 #include <zlib.h>
 
-#include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <new>

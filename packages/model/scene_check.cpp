@@ -6,8 +6,6 @@
 
 #include <fmt/ranges.h>
 
-#include <cmath>
-
 namespace sprekk::model {
 
 namespace {

@@ -1,7 +1,6 @@
 // Level of multigrid on fewer ranks than the level above.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "multigrid/aggregates.hpp"

@@ -2,8 +2,6 @@
 
 #include "multigrid/block_sizes.hpp"
 
-#include <cmath>
-
 namespace sprekk::multigrid {
 namespace {
 

@@ -7,7 +7,6 @@
 #include "mesh/facets.hpp"
 #include "physics/list.hpp"
 
-#include <algorithm>
 #include <concepts>
 #include <map>
 #include <optional>

@@ -1,7 +1,5 @@
 #include "solve/picard.hpp"
 
-#include <cmath>
-
 namespace sprekk::solve {
 namespace {
 

@@ -5,7 +5,6 @@
 #include "fields/properties.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace sprekk::transport {

@@ -49,7 +49,6 @@ class Antidiffusion {
   std::vector<Real> gains(const Kept& kept) const;
 
  private:
-  LocalIndex n_local() const { return static_cast<LocalIndex>(graph_.centre.size()); }
   std::array<Real, 3> gradient(LocalIndex e, const std::vector<Real>& u, const std::vector<Real>& of_ends) const;
   Real share(std::size_t k) const;
 

@@ -6,7 +6,6 @@
 #include "transport/hybrid_error.hpp"
 #include "transport/wells.hpp"
 
-#include <functional>
 #include <memory>
 #include <optional>
 

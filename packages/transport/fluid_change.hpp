@@ -4,7 +4,6 @@
 #include "base/expression.hpp"
 #include "laws/fluid_response.hpp"
 
-#include <optional>
 #include <string>
 
 namespace sprekk::transport {

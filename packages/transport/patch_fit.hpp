@@ -3,8 +3,6 @@
 
 #include "transport/places.hpp"
 
-#include <cmath>
-
 namespace sprekk::transport {
 
 /// Entity and its corners. A corner has the same number in all its entities, on all ranks.

@@ -6,8 +6,6 @@
 #include "mesh/facets.hpp"
 #include "transport/face_plane.hpp"
 
-#include <algorithm>
-
 namespace sprekk::physics {
 
 using assembly::Loop;

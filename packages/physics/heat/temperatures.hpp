@@ -4,8 +4,6 @@
 #include "physics/heat/water.hpp"
 #include "physics/scene.hpp"
 
-#include <string>
-
 namespace sprekk::physics {
 
 inline bool is_water(Real T) { return T >= coldest_water && T <= warmest_water; }

@@ -2,8 +2,7 @@
 #include "assembly/tip_cell.hpp"
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
-#include "laws/joint.hpp"
-#include "physics/mechanics/elastic_plastic_jump.hpp"
+#include "laws/joint_parameters.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/scene.hpp"
 
@@ -11,7 +10,6 @@
 
 #include <cmath>
 #include <map>
-#include <set>
 #include <string>
 #include <tuple>
 #include <vector>

@@ -7,7 +7,6 @@
 #include "physics/mechanics/loads.hpp"
 
 #include <memory>
-#include <vector>
 
 namespace sprekk::physics {
 

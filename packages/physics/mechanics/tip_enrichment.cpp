@@ -9,7 +9,6 @@
 #include "physics/mechanics/balanced_side.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sprekk::physics {
 

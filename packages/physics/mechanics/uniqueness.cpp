@@ -1,9 +1,9 @@
 #include "physics/mechanics/uniqueness.hpp"
 
 #include "base/over_ranks.hpp"
+#include "laws/joint_parameters.hpp"
 #include "laws/joint_slopes.hpp"
 #include "mesh/extents.hpp"
-#include "physics/mechanics/elastic_plastic_jump.hpp"
 
 #include <algorithm>
 #include <cmath>

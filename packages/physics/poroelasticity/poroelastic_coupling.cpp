@@ -9,8 +9,6 @@
 #include "physics/mechanics/displacements.hpp"
 #include "transport/hybrid_diffusion.hpp"
 
-#include <algorithm>
-
 namespace sprekk::physics {
 
 using assembly::Loop;

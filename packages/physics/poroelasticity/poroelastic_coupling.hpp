@@ -6,7 +6,6 @@
 #include "transport/stabilisation.hpp"
 
 #include <memory>
-#include <vector>
 
 namespace sprekk::physics {
 
