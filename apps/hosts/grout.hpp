@@ -54,7 +54,7 @@ inline auto make_grout(const mesh::Mesh& mesh, Real h, Real K, const std::string
   grout.unknowns[0].local_group = local_group;
   grout.linear = true;  // constant and symmetric Jacobian
   return mesh::for_shape(mesh.shape, [&](auto shape) {
-    return assembly::make_kernel_module(grout, GroutedSide<shape()>{assembly::layer_volumes<shape()>(mesh), h / K});
+    return assembly::make_kernel_module(grout, GroutedSide<shape()>{assembly::layer_volumes(mesh), h / K});
   });
 }
 

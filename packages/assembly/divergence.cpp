@@ -4,6 +4,7 @@
 #include "assembly/loop.hpp"
 #include "assembly/reference_cell.hpp"
 #include "assembly/tip_cell.hpp"
+#include "base/check.hpp"
 #include "base/host_table.hpp"
 
 #include <memory>
@@ -132,6 +133,21 @@ View<Real**> side_volumes(const mesh::Mesh& mesh) {
         volume(s, mesh::face_nodes(mesh.shape)[local_face][k] * dim + i) = area * shares[k] * face.frame[0][i];
       volume(s, n * dim + i) = area * mean * face.frame[0][i];
     }
+  }
+  return volume.on_device();
+}
+
+View<Real**> layer_volumes(const mesh::Mesh& mesh) {
+  SPREKK_CHECK(
+      mesh.n_global_enriched == 0,
+      "the volume of a layer in a fracture is not known where crack tips are enriched; give the mesh plain tips");
+  const auto sides = fracture_sides(mesh);
+  const auto of_sides = base::to_host(side_volumes(mesh));
+  const std::size_t n = of_sides.extent(1);
+  const base::HostTable<Real**> volume("layer volumes", sides.size(), n + 1);
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    for (std::size_t k = 0; k < n; ++k) volume(s, k) = of_sides(s, k);
+    volume(s, n) = mesh.fracture_faces[sides[s][0]].area / 2;
   }
   return volume.on_device();
 }

@@ -35,6 +35,12 @@ std::vector<Divergence> divergence(const mesh::Mesh& mesh, const VectorFields& n
 /// Contribution of one side to dW_f/d(u, beta): [entity of Loop::fracture_sides, node * dim + component; component].
 View<Real**> side_volumes(const mesh::Mesh& mesh);
 
+/// Coefficients V of the volume of a layer between the sides, m^2 (2D: m): [entity of Loop::fracture_sides, as
+/// side_volumes(), and 1]. A layer of thickness h at u = 0 has the volume W_f + |f| h. The sum of V . (u, beta, h) over
+/// both sides of a face gives this volume; each side contributes half of the thickness. Throws an Error if tips are
+/// enriched.
+View<Real**> layer_volumes(const mesh::Mesh& mesh);
+
 /// Contribution of one side to dW_f for the tip functions: [entity of Loop::tip_sides, node * dim + component].
 /// Requires cells of order 1.
 View<Real**> tip_side_volumes(const mesh::Mesh& mesh);

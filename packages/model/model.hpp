@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assembly/kernel_module.hpp"
-#include "assembly/layer_volume.hpp"
+#include "assembly/divergence.hpp"
 #include "assembly/system.hpp"
 #include "base/log.hpp"
 #include "base/timer.hpp"

@@ -295,12 +295,12 @@ class MeshFile(Section):
 
     path: mesh file of gmsh, format 2.2 or 4.1, relative to the folder of the scene; required, except with a network
         under `./sprekk run` and `check` (default "")
-    order: polynomial order of the displacement in each cell: 1 (linear) or 2 (quadratic); 2 adds mid-edge nodes to a
+    order: polynomial order of the node fields in each cell: 1 (linear) or 2 (quadratic); 2 adds mid-edge nodes to a
         file of order 1; absent: as in the file (between 1 and 2)
-    tips: treatment of crack tips; enriched: displacements grow with the square root of the distance from the tip, by
+    tips: treatment of crack tips; enriched: node fields grow with the square root of the distance from the tip, by
         further unknowns at order 1, by quarter-point nodes at order 2 (Barsoum 1976); plain: no enrichment ("enriched"
         | "plain"; default enriched)
-    periodic: pairs of periodic boundaries {a, b, c, d}: equal displacements on a and on its translate b, and on c and d
+    periodic: pairs of periodic boundaries {a, b, c, d}: equal node fields on a and on its translate b, and on c and d
         (default {})
     refinements: number of uniform refinements, each into 4 (2D) or 8 (3D) cells per cell, by all ranks in parallel
         after the distribution of the mesh; for meshes larger than the memory of one rank (between 0 and 20; default 0)
@@ -351,14 +351,14 @@ class Mesh(Section):
     upper_corner: highest coordinates before the rotation (m; required)
     cells: number of squares or cubes per direction; a square contains 2 triangles, a cube 6 tetrahedra (at least 1;
         required)
-    order: polynomial order of the displacement in each cell: 1 (linear) or 2 (quadratic) (between 1 and 2; default 1)
-    tips: treatment of crack tips; enriched: displacements grow with the square root of the distance from the tip, by
+    order: polynomial order of the node fields in each cell: 1 (linear) or 2 (quadratic) (between 1 and 2; default 1)
+    tips: treatment of crack tips; enriched: node fields grow with the square root of the distance from the tip, by
         further unknowns at order 1, by quarter-point nodes at order 2 (Barsoum 1976); plain: no enrichment ("enriched"
         | "plain"; default enriched)
     rotation: rotation angle of the box, counter-clockwise about the origin (degree; between -360 and 360; default 0)
     rotation_axis: axis of the rotation in 3D, through the origin (3 elements; default {0, 0, 1})
-    periodic: directions of periodicity (x, y, z before the rotation), with equal displacements on opposite sides
-        (default {})
+    periodic: directions of periodicity (x, y, z before the rotation), with equal node fields on opposite sides (default
+        {})
     refinements: number of uniform refinements, each into 4 (2D) or 8 (3D) cells per cell, by all ranks in parallel
         after the distribution of the mesh; for meshes larger than the memory of one rank (between 0 and 20; default 0)
     renumbering_seed: seed of a random order of nodes and cells; absent: regular order (at least 0)
@@ -1024,8 +1024,8 @@ class Output(Section):
 
     vtu: switch for bulk.pvd and fractures.pvd, for ParaView (default true)
     every: interval of bulk.pvd and fractures.pvd, in steps; the last step is always written (at least 1; default 1)
-    error_estimate: estimate of the error of stress, jumps and fluxes on this mesh after every step: error_estimate in
-        results.json, and fields; costs a pass over all cells and, for jumps, a linear solve per step (default false)
+    error_estimate: estimate of the error due to the mesh after every step: error_estimate in results.json, and fields;
+        costs a pass over all cells and, with fractures, a linear solve per step (default false)
     time_unit: unit of times in tables of probes and in pictures ("s" | "min" | "h" | "d" | "year"; default s)
     checkpoints: checkpoints for --restart; another checkpoint follows the last step (may be absent)
     """
@@ -1043,8 +1043,8 @@ class Stage(Section):
     without: paths of sections and entries that the stage removes, e.g. Boundary conditions > pull (default {})
     excavate: names of regions that the stage excavates; their walls become boundaries of the same names, and fractures
         end there (default {})
-    backfill: names of excavated regions that the stage fills with the materials of "Regions", free of stress when
-        placed (default {})
+    backfill: names of excavated regions that the stage fills with the materials of "Regions", unloaded when placed
+        (default {})
     release: duration of the linear release of unbalanced forces at the begin of the stage; absent: release in its first
         step (s; positive)
     sections: sections as they stand in the scene
