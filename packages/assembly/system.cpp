@@ -14,6 +14,7 @@ namespace sprekk::assembly {
 
 using fields::BlockMatrix;
 using fields::BlockVector;
+using fields::Evaluation;
 using fields::Measure;
 
 namespace {
@@ -44,9 +45,10 @@ System::System(RCP<const mesh::Mesh> mesh, std::vector<std::unique_ptr<Module>> 
       extent_(mesh::largest_extent(*mesh)),
       contact_blocks_(contact_blocks(structure_)) {
   const auto scope = timers->scope("set-up");
-  jacobian_.assemble_linear(state());
+  const auto origin = state(ghosts_.zero());
+  jacobian_.assemble_linear(origin);
   structure_.stencils->forget_writers();
-  jacobian_.assemble_balances(state());
+  jacobian_.assemble_balances(origin);
   row_sizes_ = std::make_unique<RowSizes>(structure_, jacobian_.linear(), jacobian_.matrix());
   watch_contact();
 }
@@ -106,22 +108,25 @@ BlockVector System::initial() const {
   return x;
 }
 
-/// Returns the state at the last exchanged x, without histories.
-State System::state() const {
-  return {.t = rate_history_.t(),
-          .rate = rate_history_.rates().now,
-          .before = rate_history_.rates().before,
-          .contact = contact_ ? contact_->regularisation() : contact::Regularisation(),
-          .coefficients = flux_lag_.coefficients(),
-          .x = ghosts_.views(),
-          .history = {}};
+/// Returns the present state at x, without histories. It shares the values of x.
+State System::state(const BlockVector& with_ghosts) const {
+  State state{.t = rate_history_.t(),
+              .rate = rate_history_.rates().now,
+              .before = rate_history_.rates().before,
+              .contact = contact_ ? contact_->regularisation() : contact::Regularisation(),
+              .coefficients = flux_lag_.coefficients(),
+              .x = {},
+              .history = {}};
+  for (const auto& v : with_ghosts)
+    state.x.push_back(Kokkos::subview(v->getLocalViewDevice(Tpetra::Access::ReadOnly), Kokkos::ALL, 0));
+  return state;
 }
 
-/// Exchanges the ghosts of x and returns the state there.
-State System::at(const BlockVector& x, Ghosts::Which which) {
-  ghosts_.exchange(x, which);
-  return state();
+const BlockVector& System::with_ghosts(const Evaluation& x, Ghosts::Which which) {
+  return x.with_ghosts([&](const BlockVector& owned) { return ghosts_.exchange(owned, which); });
 }
+
+State System::at(const Evaluation& x, Ghosts::Which which) { return state(with_ghosts(x, which)); }
 
 void System::set_time(Real t, Real dt) {
   const auto scope = structure_.timers->scope("loads");
@@ -137,25 +142,25 @@ void System::set_time(Real t, Real dt) {
       changes = changes || !module.loads->constant_load();
     }
   });
-  const auto now = state();
+  const auto now = state(ghosts_.zero());
   base::collectively(*comm(), [&] {
     for (const auto& module : structure_.modules)
       if (module.steps) module.steps->start_step(module.at(now));
   });
   if (!changes) return;
   for (const auto& block : load_) block->putScalar(0);
-  ghosts_.set_zero();
   const auto views = rows_of(load_);
   for (const auto& module : structure_.modules)
     if (module.declaration.linear) module->residual(module.at(now), views);
   loaded_ = true;
 }
 
-/// Computes the residual without constraints at the last exchanged x.
-void System::residual_at(const State& state, BlockVector& r) {
+/// Computes the residual without constraints, with the rates of a state at x.
+void System::residual_at(const Evaluation& x, const State& state, BlockVector& r) {
   const auto scope = structure_.timers->scope("residual");
   fields::copy(load_, r);
-  jacobian_.add_linear(contact_ ? contact_->without_rigid_motions(ghosts_.vectors()) : ghosts_.vectors(), r);
+  const auto& all = with_ghosts(x);
+  jacobian_.add_linear(contact_ ? contact_->without_rigid_motions(all) : all, r);
   const auto views = rows_of(r);
   for (const auto& module : structure_.modules) {
     if (module.declaration.linear) continue;
@@ -165,15 +170,15 @@ void System::residual_at(const State& state, BlockVector& r) {
   rate_history_.subtract_before(state.before, views);
 }
 
-void System::raw_residual(const BlockVector& x, BlockVector& r) { residual_at(at(x), r); }
+void System::raw_residual(const Evaluation& x, BlockVector& r) { residual_at(x, at(x), r); }
 
-void System::residual(const BlockVector& x, BlockVector& r) {
+void System::residual(const Evaluation& x, BlockVector& r) {
   raw_residual(x, r);
   for (std::size_t b = 0; b < r.size(); ++b) {
     if (structure_.constraints[b].conditions().empty()) continue;
     const auto mask = structure_.constraints[b].mask();
     const auto value = structure_.constraints[b].values();
-    const auto unknown = const_view_of(*x[b]);
+    const auto unknown = const_view_of(*x.x()[b]);
     const auto row = view_of(*r[b]);
     Kokkos::parallel_for(
         "constraints", Kokkos::RangePolicy<Execution>(0, row.extent(0)), KOKKOS_LAMBDA(int i) {
@@ -182,24 +187,24 @@ void System::residual(const BlockVector& x, BlockVector& r) {
   }
 }
 
-void System::jacobian(const BlockVector& x) {
+void System::jacobian(const Evaluation& x) {
   const auto there = at(x);
   jacobian_.assemble(there);
   row_sizes_->update(there);
   if (contact_ && contact_->pieces()) contact_->find_loose(grips_at(there));
 }
 
-void System::commit(const BlockVector& x) {
+void System::commit(const Evaluation& x) {
   const auto there = at(x);
   if (contact_ && contact_->pieces()) {
     // before the histories change: afterwards, sliding faces are at the limit of sticking
     contact_->find_loose(grips_at(there));
-    contact_->remember(x);
+    contact_->remember(x.x());
   }
   BlockVector end;
-  if (has_rates()) residual_at(there, end = fields::create_like(x));
+  if (has_rates()) residual_at(x, there, end = structure_.create_vector());
   rate_history_.commit(end, there);
-  if (accuracy_) accuracy_->commit(x, rate_history_.dt(), there);
+  if (accuracy_) accuracy_->commit(x.x(), rate_history_.dt(), there);
   for (const auto& module : structure_.modules) {
     if (!module.steps) continue;
     auto s = module.at(there);
@@ -207,10 +212,10 @@ void System::commit(const BlockVector& x) {
   }
 }
 
-std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r) {
+std::vector<Measure> System::measures(const Evaluation& x, const BlockVector& r) {
   const auto there = at(x);
   if (contact_blocks_.multiplier >= 0) row_sizes_->set_augmentation(contact_blocks_.multiplier, grips_at(there));
-  auto measures = row_sizes_->measures(x, r);
+  auto measures = row_sizes_->measures(x.x(), r);
   for (const auto& module : structure_.modules) {
     if (!module.errors) continue;
     const auto scope_of_module = structure_.timers->scope(module->name());
@@ -224,9 +229,9 @@ std::vector<Measure> System::measures(const BlockVector& x, const BlockVector& r
   return measures;
 }
 
-Real System::merit(const BlockVector& x, const BlockVector& r) { return row_sizes_->merit(x, r); }
+Real System::merit(const Evaluation& x, const BlockVector& r) { return row_sizes_->merit(x.x(), r); }
 
-Real System::lag(Lag how, const BlockVector& x) {
+Real System::lag(Lag how, const Evaluation& x) {
   if (how != Lag::none) return flux_lag_.update(how, structure_, at(x));
   flux_lag_.stop();
   return 0;
@@ -239,12 +244,7 @@ std::vector<contact::Grip> System::grips_at(const State& state) const {
   return grips;
 }
 
-std::vector<contact::Grip> System::grips(const BlockVector& x) { return grips_at(at(x)); }
-
-std::vector<contact::Grip> System::evaluate(const BlockVector& x, BlockVector& r) {
-  residual(x, r);
-  return grips_at(state());
-}
+std::vector<contact::Grip> System::grips(const Evaluation& x) { return grips_at(at(x)); }
 
 contact::Sizes System::sizes() const {
   const auto& [motion, multiplier] = contact_blocks_;
@@ -260,7 +260,7 @@ contact::Sizes System::sizes() const {
   return sizes;
 }
 
-std::vector<char> System::states(const BlockVector& x) {
+std::vector<char> System::states(const Evaluation& x) {
   const auto there = at(x);
   std::vector<char> states(structure_.mesh->n_owned_fracture_faces);
   for (const auto& module : structure_.modules) {
@@ -302,12 +302,12 @@ void System::take_over(const BlockVector& x) {
   }
 }
 
-void System::pass_unbalanced(const BlockVector& x) {
-  auto r = fields::create_like(x);
+void System::pass_unbalanced(const Evaluation& x) {
+  auto r = structure_.create_vector();
   residual(x, r);
   const auto views = rows_of(r);
   structure_.zero_prescribed(views);
-  const auto there = state();
+  const auto there = at(x);
   for (const auto& module : structure_.modules) {
     if (!module.transfer) continue;
     auto s = module.at(there);
@@ -340,11 +340,11 @@ void System::watch_errors(Real duration) {
 }
 
 /// Returns the loads of modules at time t and state x, [block], followed by the prescribed values, [block].
-BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
+BlockVector System::loads(const Evaluation& x, Real t, Real dt) {
   set_time(t, dt);
   auto there = at(x);
   there.rate = 0;
-  auto all = fields::create_like(x), prescribed = fields::create_like(x);
+  auto all = structure_.create_vector(), prescribed = structure_.create_vector();
   const auto views = rows_of(all);
   for (const auto& module : structure_.modules)
     if (!module.has_constant_load()) module->residual(module.at(there), views);
@@ -354,7 +354,7 @@ BlockVector System::loads(const BlockVector& x, Real t, Real dt) {
   return all;
 }
 
-Real System::bend_of_loads(const BlockVector& x, Real t, Real dt) {
+Real System::bend_of_loads(const Evaluation& x, Real t, Real dt) {
   const auto scales = this->scales();  // the step to t may be rejected
   const Real bend = accuracy_->bend([&](Real s) { return loads(x, s == 1 ? t : t - dt + s * dt, dt); });
   scaling_.restore(scales);
@@ -391,11 +391,11 @@ std::vector<Total> System::totals(const BlockVector& x) {
   return totals;
 }
 
-std::vector<Reaction> System::reactions(const BlockVector& x) {
+std::vector<Reaction> System::reactions(const Evaluation& x) {
   auto there = at(x);
   there.rate = there.before = 0;  // the histories have been updated: no storage
-  auto r = fields::create_like(x);
-  residual_at(there, r);
+  auto r = structure_.create_vector();
+  residual_at(x, there, r);
   return sums_of_held(r);
 }
 
@@ -423,8 +423,8 @@ void System::module_jacobian(int module, const BlockVector& x, BlockMatrix& J) {
   assemble(modules()[module], at(x, Ghosts::Which::all), J);
 }
 
-BlockVector System::artificially_stored(const BlockVector& x) {
-  auto sum = fields::create_like(x);
+BlockVector System::artificially_stored(const Evaluation& x) {
+  auto sum = structure_.create_vector();
   const auto there = at(x, Ghosts::Which::all);
   const auto views = rows_of(sum);
   for (const auto& module : structure_.modules)
@@ -433,11 +433,11 @@ BlockVector System::artificially_stored(const BlockVector& x) {
 }
 
 /// Computes the derivative of the quantity that the rates multiply.
-BlockVector System::stored(const BlockVector& x, const BlockVector& dx) {
-  auto sum = artificially_stored(x), product = fields::create_like(x);
+BlockVector System::stored(const Evaluation& x, const BlockVector& dx) {
+  auto sum = artificially_stored(x), product = structure_.create_vector();
   for (const auto& block : sum) block->scale(-1);
   auto J = create_matrix();
-  const auto there = state();
+  const auto there = at(x, Ghosts::Which::all);
   for (const auto& module : structure_.modules) {
     if (!module.declaration.stores) continue;
     for (const Real rate : {there.rate, Real(0)}) {

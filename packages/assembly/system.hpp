@@ -30,10 +30,10 @@ class System : public fields::BlockProblem, private contact::Equations {
   const std::vector<fields::Block>& blocks() const override { return structure_.blocks; }
   const std::vector<fields::LocalGroup>& local_groups() const override { return structure_.groups; }
   void set_time(Real t, Real dt) override;
-  void commit(const fields::BlockVector& x) override;
-  void residual(const fields::BlockVector& x, fields::BlockVector& r) override;
-  void raw_residual(const fields::BlockVector& x, fields::BlockVector& r) override;
-  void jacobian(const fields::BlockVector& x) override;
+  void commit(const fields::Evaluation& x) override;
+  void residual(const fields::Evaluation& x, fields::BlockVector& r) override;
+  void raw_residual(const fields::Evaluation& x, fields::BlockVector& r) override;
+  void jacobian(const fields::Evaluation& x) override;
   const fields::BlockMatrix& matrix() const override { return jacobian_.matrix(); }
   std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J) override {
     return jacobian_.share(block, J);
@@ -42,10 +42,10 @@ class System : public fields::BlockProblem, private contact::Equations {
   bool symmetric() const override { return jacobian_.symmetric() && !structure_.coupled; }
   bool symmetric_blocks() const override { return jacobian_.symmetric(); }
   ConstView<char*> constrained(int block) const override { return structure_.constraints[block].mask(); }
-  std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) override;
-  Real merit(const fields::BlockVector& x, const fields::BlockVector& r) override;
+  std::vector<fields::Measure> measures(const fields::Evaluation& x, const fields::BlockVector& r) override;
+  Real merit(const fields::Evaluation& x, const fields::BlockVector& r) override;
   RCP<const fields::Vector> schur(int block) const override { return row_sizes_->schur(block); }
-  Real lag(Lag how, const fields::BlockVector& x) override;
+  Real lag(Lag how, const fields::Evaluation& x) override;
   fields::Globalisation& globalisation() override;
 
   /// Returns the initial state [block]: zero, except for values set by modules.
@@ -54,7 +54,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   std::vector<OutputField> outputs(const fields::BlockVector& x);
   /// Returns the reactions of each condition, [condition], summed over ranks. An unknown with two conditions counts for
   /// the first. Storage terms are omitted. Collective.
-  std::vector<Reaction> reactions(const fields::BlockVector& x);
+  std::vector<Reaction> reactions(const fields::Evaluation& x);
   /// Returns the reactions at the end of the last step, with the rates of storage. Without storage, or before the first
   /// step, returns reactions(x). Collective.
   std::vector<Reaction> reactions_of_step(const fields::BlockVector& x);
@@ -87,7 +87,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Lets modules take over x and the histories of another system. Call before resume(). Collective.
   void take_over(const fields::BlockVector& x);
   /// Passes the unbalanced residual at x to the modules, after resume(). Collective.
-  void pass_unbalanced(const fields::BlockVector& x);
+  void pass_unbalanced(const fields::Evaluation& x);
 
   /// Enables step error estimates in each commit. Call at the initial state. Collective.
   void watch_errors(Real duration);
@@ -97,18 +97,18 @@ class System : public fields::BlockProblem, private contact::Equations {
   fields::StepErrors take_errors() { return accuracy_ ? accuracy_->take() : fields::StepErrors(); }
   /// Returns the deviation of the loads at x from a linear path in the step of length dt to t. The deviation is
   /// relative to the largest change of the loads in a step so far. Changes the present time. Collective.
-  Real bend_of_loads(const fields::BlockVector& x, Real t, Real dt);
+  Real bend_of_loads(const fields::Evaluation& x, Real t, Real dt);
   /// Restarts the rate errors, see RateErrors::forget.
   void forget_rates(bool abrupt) { accuracy_->forget(abrupt); }
 
   /// Returns the contact constraints, [owned fracture face]. Collective.
-  std::vector<contact::Grip> grips(const fields::BlockVector& x) override;
+  std::vector<contact::Grip> grips(const fields::Evaluation& x) override;
 
   const mesh::Mesh& mesh() const { return *structure_.mesh; }
   const std::vector<BoundModule>& modules() const { return structure_.modules; }
   const std::vector<fields::Layout>& layouts() const { return structure_.layouts; }
   const Scales& scales() const { return scaling_.values(); }
-  /// Returns whether a module reads ghosts of the block. Such blocks are exchanged once per residual.
+  /// Returns whether a module reads ghosts of the block. Such blocks are exchanged once per evaluation.
   bool exchanged(int block) const { return structure_.exchanged[block]; }
   /// Returns a zero matrix with all declared blocks, as filled by jacobian(). Collective.
   fields::BlockMatrix create_matrix() const { return structure_.create_matrix(); }
@@ -116,25 +116,28 @@ class System : public fields::BlockProblem, private contact::Equations {
   void module_residual(int module, const fields::BlockVector& x, fields::BlockVector& r);
   void module_jacobian(int module, const fields::BlockVector& x, fields::BlockMatrix& J);
 
+  /// Returns the numbers of exchanges of ghosts since the last call. Collective.
+  fields::Exchanges take_exchanges() { return ghosts_.take(); }
+
   const Rates& rates() const { return rate_history_.rates(); }
   /// Returns the increase of the storage from x to x + dx for small dx, without the factor of the rates, minus
   /// artificially_stored(x). Collective.
-  fields::BlockVector stored(const fields::BlockVector& x, const fields::BlockVector& dx);
+  fields::BlockVector stored(const fields::Evaluation& x, const fields::BlockVector& dx);
   /// Returns the stabilising storage at x, see ArtificialStorage. Collective.
-  fields::BlockVector artificially_stored(const fields::BlockVector& x);
+  fields::BlockVector artificially_stored(const fields::Evaluation& x);
 
  private:
-  State state() const;
-  State at(const fields::BlockVector& x, Ghosts::Which which = Ghosts::Which::read);
-  void residual_at(const State& state, fields::BlockVector& r);
+  State state(const fields::BlockVector& with_ghosts) const;
+  const fields::BlockVector& with_ghosts(const fields::Evaluation& x, Ghosts::Which which = Ghosts::Which::read);
+  State at(const fields::Evaluation& x, Ghosts::Which which = Ghosts::Which::read);
+  void residual_at(const fields::Evaluation& x, const State& state, fields::BlockVector& r);
   void assemble(const BoundModule& module, const State& state, fields::BlockMatrix& J) const;
-  fields::BlockVector loads(const fields::BlockVector& x, Real t, Real dt);
+  fields::BlockVector loads(const fields::Evaluation& x, Real t, Real dt);
   void watch_contact();
   std::vector<contact::Support> supports_of(int block) const;
   bool linear_part_is_invariant() const;
   std::vector<contact::Grip> grips_at(const State& state) const;
-  std::vector<contact::Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) override;
-  std::vector<char> states(const fields::BlockVector& x) override;
+  std::vector<char> states(const fields::Evaluation& x) override;
   contact::Sizes sizes() const override;
   void begin_anew() override { row_sizes_->begin_solve(); }
 

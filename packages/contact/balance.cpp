@@ -8,6 +8,7 @@
 namespace sprekk::contact {
 
 using fields::BlockVector;
+using fields::Evaluation;
 
 RCP<const fields::Vector> Contact::proximal(int block) const {
   return block == blocks_.motion && pieces_ && pieces_->any() ? Teuchos::rcpFromRef(pieces_->proximal())
@@ -39,39 +40,42 @@ constexpr Real least_force = 1e-12;
 
 /// Returns the work of unbalanced forces at x on a motion, [group]. It is negative if the motion follows the force.
 /// Collective.
-std::vector<Real> Contact::work(const LoosePieces::Motion& motion, const BlockVector& x) {
-  auto r = fields::create_like(x);
-  const auto grips = equations_.evaluate(x, r);
-  return pieces_->work(motion, *r[blocks_.motion], grips);
+std::vector<Real> Contact::work(const LoosePieces::Motion& motion, const Evaluation& x) {
+  auto r = fields::create_like(x.x());
+  equations_.residual(x, r);
+  return pieces_->work(motion, *r[blocks_.motion], equations_.grips(x));
 }
 
 /// Replaces the share of free motions in a step. Without resistance, the proximal term alone limits the motion: the
 /// step is about 1e4 times too long. The free motion is removed from dx. The multiple of it that balances the forces
 /// along it is added: until the piece touches or sticks. Remaining forces along the free motions are balanced one
 /// motion after another.
-std::string Contact::balance(const BlockVector& x, BlockVector& dx) {
+std::string Contact::balance(const Evaluation& x, BlockVector& dx, Evaluation& end) {
   if (!pieces_ || !pieces_->any() || damped_everywhere_ > 0) return "";
   const auto motion = pieces_->part_of(*dx[blocks_.motion]);
   pieces_->add(std::vector<Real>(pieces_->n_groups(), -1), motion, *dx[blocks_.motion]);
-  const auto unresisted = balance_along(motion, x, dx, false);
+  end = {};
+  const auto unresisted = balance_along(motion, x.x(), dx, end, false);
   for (int sweep = 0; sweep < n_sweeps && unresisted.empty(); ++sweep)
-    for (int k = 0; k < pieces_->most_modes(); ++k) balance_along(pieces_->mode(k), x, dx, true);
+    for (int k = 0; k < pieces_->most_modes(); ++k) balance_along(pieces_->mode(k), x.x(), dx, end, true);
   return unresisted;
 }
 
 /// Evaluates residuals, which are inexpensive compared with the Newton steps saved. All groups share the evaluations.
 std::string Contact::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx,
-                                   bool mode) {
-  auto& du = *dx[blocks_.motion];
+                                   Evaluation& end, bool mode) {
   const int n = pieces_->n_groups();
-  auto y = fields::create_like(x);
-  const auto at = [&](const std::vector<Real>& s) {
-    for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1, *dx[b], 0);
+  const auto after = [&](const std::vector<Real>& s) {
+    auto y = fields::create_like(x);
+    fields::copy(dx, y);
     pieces_->add(s, motion, *y[blocks_.motion]);
-    return work(motion, y);
+    for (std::size_t b = 0; b < x.size(); ++b) y[b]->update(1, *x[b], 1);
+    return Evaluation(y);
   };
   std::vector<Real> s(n, 0), sign(n, 1);
-  const auto start = at(s);
+  if (end.empty()) end = after(s);
+  auto last = end;
+  const auto start = work(motion, last);
   std::vector<ZeroSearch> searches;
   const auto sizes = equations_.sizes();
   const Real length = sizes.motion, force = sizes.force, reach = 4 * sizes.extent + 1e3 * length;
@@ -85,13 +89,16 @@ std::string Contact::balance_along(const LoosePieces::Motion& motion, const Bloc
   if (!mode) driven_ = pieces_->selected(motion, [&](int g) { return !searches[g].done(); });
   while (!all_done()) {
     for (int g = 0; g < n; ++g) s[g] = sign[g] * searches[g].s;
-    const auto value = at(s);
+    const auto value = work(motion, last = after(s));
     for (int g = 0; g < n; ++g) searches[g].next(sign[g] * value[g]);
   }
   for (int g = 0; g < n; ++g)
     s[g] = !searches[g].lost() ? sign[g] * searches[g].s : mode ? 0 : length / motion.largest[g];
-  pieces_->add(s, motion, du);
   const auto lost = pieces_->selected(motion, [&](int g) { return searches[g].lost(); });
+  if (s != std::vector<Real>(n, 0)) {
+    pieces_->add(s, motion, *dx[blocks_.motion]);
+    end = lost.q.empty() ? last : Evaluation();
+  }
   return lost.q.empty() ? "" : pieces_->describe(lost);
 }
 

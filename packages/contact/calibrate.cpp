@@ -12,8 +12,6 @@
 
 namespace sprekk::contact {
 
-using fields::BlockVector;
-
 namespace {
 
 constexpr Real usual = 3;          ///< typical stiffness of the rock, measured as below, relative to the constant
@@ -39,7 +37,7 @@ int Contact::calibration_class(const Grip& grip) const {
 /// once: the stiffness is constant, but between later iterates, separating blocks move far without elastic resistance.
 /// If sides approach each other under a constant load, the traction does not change. Round-off of the traction is not a
 /// stiffness.
-bool Contact::calibrate(const BlockVector& x, bool first) {
+bool Contact::calibrate(const fields::Evaluation& x, bool first) {
   if (blocks_.multiplier < 0) return false;
   calibration_.resize(n_classes, 0);
   if (std::find(calibration_.begin(), calibration_.end(), 0) == calibration_.end()) return false;

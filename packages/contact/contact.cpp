@@ -52,7 +52,7 @@ void Contact::damp(Real everywhere, const std::vector<Real>& here) {
   regularisation_.damping = damping.on_device();
 }
 
-bool Contact::tether(Real stiffness, const BlockVector& x) {
+bool Contact::tether(Real stiffness, const fields::Evaluation& x) {
   regularisation_.tether = 0;
   equations_.begin_anew();
   if (stiffness == 0 || blocks_.multiplier < 0) return blocks_.multiplier >= 0;
@@ -69,7 +69,7 @@ bool Contact::tether(Real stiffness, const BlockVector& x) {
   return true;
 }
 
-bool Contact::weakens(const BlockVector& x) {
+bool Contact::weakens(const fields::Evaluation& x) {
   const auto grips = equations_.grips(x);
   return base::on_any_rank(*mesh_->comm,
                            std::any_of(grips.begin(), grips.end(), [](const Grip& grip) { return grip.weakens; }));

@@ -6,7 +6,6 @@
 #include "fields/globalisation.hpp"
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +24,12 @@ struct Sizes {
 class Equations {
  public:
   virtual ~Equations() = default;
-  /// Computes r = f(x) and returns the contact constraints at x, [owned fracture face].
-  virtual std::vector<Grip> evaluate(const fields::BlockVector& x, fields::BlockVector& r) = 0;
-  virtual std::vector<Grip> grips(const fields::BlockVector& x) = 0;
+  /// Computes r = f(x).
+  virtual void residual(const fields::Evaluation& x, fields::BlockVector& r) = 0;
+  /// Returns the contact constraints, [owned fracture face].
+  virtual std::vector<Grip> grips(const fields::Evaluation& x) = 0;
   /// Returns the contact states, [owned fracture face].
-  virtual std::vector<char> states(const fields::BlockVector& x) = 0;
+  virtual std::vector<char> states(const fields::Evaluation& x) = 0;
   virtual Sizes sizes() const = 0;
   /// Starts a new solve: the round-off of the last Jacobian no longer applies.
   virtual void begin_anew() = 0;
@@ -71,17 +71,17 @@ class Contact : public fields::Globalisation {
   /// Continues from the accepted state x with these factors. Throws an Error for a wrong number of factors.
   void resume(const fields::BlockVector& x, const std::vector<Real>& calibration);
 
-  std::vector<char> states(const fields::BlockVector& x) override { return equations_.states(x); }
-  bool weakens(const fields::BlockVector& x) override;
+  std::vector<char> states(const fields::Evaluation& x) override { return equations_.states(x); }
+  bool weakens(const fields::Evaluation& x) override;
   std::size_t state_hash(const std::vector<char>& states) override;
   std::string where(const std::vector<char>& flagged) override;
   RCP<const fields::Vector> proximal(int block) const override;
-  std::string balance(const fields::BlockVector& x, fields::BlockVector& dx) override;
+  std::string balance(const fields::Evaluation& x, fields::BlockVector& dx, fields::Evaluation& end) override;
   std::string loose() const override;
   void damp(Real everywhere, const std::vector<Real>& here) override;
-  bool tether(Real stiffness, const fields::BlockVector& x) override;
-  bool calibrate(const fields::BlockVector& x, bool first) override;
-  bool settle(fields::BlockVector& x) override;
+  bool tether(Real stiffness, const fields::Evaluation& x) override;
+  bool calibrate(const fields::Evaluation& x, bool first) override;
+  bool settle(fields::Evaluation& x) override;
 
  private:
   int calibration_class(const Grip& grip) const;
@@ -90,11 +90,11 @@ class Contact : public fields::Globalisation {
   /// Returns an empty string, or a description of the part without resistance. That part moves by the displacement
   /// scale; a mode does not move.
   std::string balance_along(const LoosePieces::Motion& motion, const fields::BlockVector& x, fields::BlockVector& dx,
-                            bool mode);
-  std::vector<Real> work(const LoosePieces::Motion& motion, const fields::BlockVector& x);
-  std::optional<std::vector<RigidRow>> way_back(const fields::BlockVector& x,
-                                                const std::vector<LoosePieces::Slide>& slides,
-                                                const std::vector<Real>& least);
+                            fields::Evaluation& end, bool mode);
+  std::vector<Real> work(const LoosePieces::Motion& motion, const fields::Evaluation& x);
+  fields::Evaluation after(const fields::Evaluation& x, const std::vector<RigidRow>& motion) const;
+  fields::Evaluation way_back(const fields::Evaluation& x, const std::vector<LoosePieces::Slide>& slides,
+                              const std::vector<Real>& least, fields::Evaluation& unobstructed);
 
   Equations& equations_;
   RCP<const mesh::Mesh> mesh_;

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace sprekk::contact {
 
-using fields::BlockVector;
+using fields::Evaluation;
 using mesh::Vector;
 using mesh::operator+;
 using mesh::operator-;
@@ -56,26 +57,40 @@ void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::
   }
 }
 
+/// Returns the largest difference. Collective.
+Real distance(const RCP<fields::Vector>& a, const RCP<fields::Vector>& b) {
+  fields::Vector difference(*a, Teuchos::Copy);
+  difference.update(-1, *b, 1);
+  return difference.normInf();
+}
+
 }  // namespace
 
-/// Returns the free motion to the nearest admissible state. Each pass adds two kinds of obstacles: faces with a gap
-/// below `least` [face], linearised at the last motion, and faces that would slide against their traction. No value:
-/// not found. Collective.
-std::optional<std::vector<RigidRow>> Contact::way_back(const BlockVector& x,
-                                                       const std::vector<LoosePieces::Slide>& slides,
-                                                       const std::vector<Real>& least) {
+/// Returns x after a free motion of the pieces. Collective.
+Evaluation Contact::after(const Evaluation& x, const std::vector<RigidRow>& motion) const {
+  auto there = x.x();
+  auto& u = there[blocks_.motion];
+  u = rcp(new fields::Vector(*u, Teuchos::Copy));
+  pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {motion, {}}, *u);
+  return distance(x.x()[blocks_.motion], u) > 0 ? Evaluation(there) : x;
+}
+
+/// Returns the nearest admissible state. Each pass adds two kinds of obstacles: faces with a gap below `least` [face],
+/// linearised at the last motion, and faces that would slide against their traction. Empty: not found. `unobstructed`:
+/// result of the first pass; empty before the first call. Collective.
+Evaluation Contact::way_back(const Evaluation& x, const std::vector<LoosePieces::Slide>& slides,
+                             const std::vector<Real>& least, Evaluation& unobstructed) {
   constexpr int most_passes = 30;
   const Real length = equations_.sizes().motion, slack = 0.1 * margin * length;
-  auto there = fields::create_like(x);
-  auto away = fields::Vector(*x[blocks_.motion], Teuchos::Copy);
+  auto away = fields::Vector(*x.x()[blocks_.motion], Teuchos::Copy);
   away.update(-1, *committed_, 1);
   const auto places = pieces_->places(away, slides);
   std::vector<LoosePieces::Obstacle> obstacles;
   for (int pass = 0; pass < most_passes; ++pass) {
     const auto motion = pieces_->nearest(places, obstacles, length);
     if (!motion) return {};
-    fields::copy(x, there);
-    pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *there[blocks_.motion]);
+    const auto there = pass == 0 && !unobstructed.empty() ? unobstructed : after(x, *motion);
+    if (pass == 0) unobstructed = there;
     const auto grips = equations_.grips(there);
     const auto n_before = obstacles.size();
     for (LocalIndex f = 0; f < static_cast<LocalIndex>(grips.size()); ++f) {
@@ -89,12 +104,12 @@ std::optional<std::vector<RigidRow>> Contact::way_back(const BlockVector& x,
           mesh::dot(slide.along, pieces_->jump(slide.face, *motion)) < back - slack)
         obstacles.push_back({slide.face, slide.along, back});
     }
-    if (!base::on_any_rank(*mesh_->comm, obstacles.size() > n_before)) return motion;
+    if (!base::on_any_rank(*mesh_->comm, obstacles.size() > n_before)) return there;
   }
   return {};
 }
 
-bool Contact::settle(BlockVector& x) {
+bool Contact::settle(Evaluation& x) {
   if (!pieces_) return false;
   nearest_known_ = true;
   const auto sizes = equations_.sizes();
@@ -110,14 +125,13 @@ bool Contact::settle(BlockVector& x) {
   release(*mesh_, least, released, slides);
   pieces_->find(released);
   if (!pieces_->any()) return false;
-  auto motion = way_back(x, slides, apart);
-  if (!motion) motion = way_back(x, slides, touching);  // the piece fits without clearance
-  nearest_known_ = motion.has_value();
-  if (!motion) return false;
-  auto moved = fields::Vector(*x[blocks_.motion], Teuchos::Copy);
-  pieces_->add(std::vector<Real>(pieces_->n_groups(), 1), {*motion, {}}, *x[blocks_.motion]);
-  moved.update(-1, *x[blocks_.motion], 1);
-  return moved.normInf() > settled * length;
+  Evaluation unobstructed;
+  auto found = way_back(x, slides, apart, unobstructed);
+  if (found.empty()) found = way_back(x, slides, touching, unobstructed);  // the piece fits without clearance
+  nearest_known_ = !found.empty();
+  if (found.empty()) return false;
+  const auto before = std::exchange(x, found);
+  return distance(before.x()[blocks_.motion], x.x()[blocks_.motion]) > settled * length;
 }
 
 }  // namespace sprekk::contact

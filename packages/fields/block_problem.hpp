@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fields/block_matrix.hpp"
+#include "fields/evaluation.hpp"
 #include "fields/globalisation.hpp"
 
 #include <functional>
@@ -72,14 +73,14 @@ class BlockProblem {
   virtual void set_time(Real t, Real dt) = 0;
   /// Accepts x as the state at the current time and updates the history variables. Before this call the state is
   /// unchanged, so a failed step can restart from the last accepted x.
-  virtual void commit(const BlockVector& x) = 0;
+  virtual void commit(const Evaluation& x) = 0;
 
   /// Computes r = f(x). The row of a constrained unknown is x - x_D(t).
-  virtual void residual(const BlockVector& x, BlockVector& r) = 0;
+  virtual void residual(const Evaluation& x, BlockVector& r) = 0;
   /// Computes r without constraints. The rows of constrained unknowns are the reactions.
-  virtual void raw_residual(const BlockVector& x, BlockVector& r) = 0;
+  virtual void raw_residual(const Evaluation& x, BlockVector& r) = 0;
   /// Assembles matrix() = df/dx at x, without constraints: rows and columns of constrained unknowns are included.
-  virtual void jacobian(const BlockVector& x) = 0;
+  virtual void jacobian(const Evaluation& x) = 0;
   virtual const BlockMatrix& matrix() const = 0;
   /// Stores a constant diagonal block of matrix() in J to save memory. The local columns of J must begin with those of
   /// the block. J must contain the values of the block and zeros elsewhere. Returns the object that saves values of the
@@ -97,9 +98,9 @@ class BlockProblem {
   virtual ConstView<char*> constrained(int block) const = 0;
 
   /// Measures of convergence of x with r = residual(x), at least one for each unit.
-  virtual std::vector<Measure> measures(const BlockVector& x, const BlockVector& r) = 0;
+  virtual std::vector<Measure> measures(const Evaluation& x, const BlockVector& r) = 0;
   /// Squared energy norm of r, for line searches.
-  virtual Real merit(const BlockVector& x, const BlockVector& r) = 0;
+  virtual Real merit(const Evaluation& x, const BlockVector& r) = 0;
   /// Estimate of the contribution of all other blocks to the diagonal of a block, if they were eliminated. [owned
   /// unknown], for the Jacobian of the last jacobian(), for preconditioners. Null if there is no contribution.
   virtual RCP<const Vector> schur(int block) const { return Teuchos::null; }
@@ -111,7 +112,7 @@ class BlockProblem {
   /// * widest: the largest values possible under the present loads.
   /// Returns the largest |ln| of the ratio of the values at x to the previous fixed ones. Returns a negative number if
   /// there are no such coefficients; f is then unchanged. Collective.
-  virtual Real lag(Lag how, const BlockVector& x) { return -1; }
+  virtual Real lag(Lag how, const Evaluation& x) { return -1; }
   /// Globalisation of Newton's method, for f that is not smooth.
   virtual Globalisation& globalisation() { return smooth_; }
 

@@ -214,7 +214,9 @@ solve::StepReport Model::find_equilibrium() {
 solve::StepReport Model::advance(Real t) {
   const auto scope = timers_->scope("time steps");
   beginning_ = beginning();
+  system_->take_exchanges();
   auto report = stepper_->advance(x_, time_, t);
+  report.exchanges = system_->take_exchanges();
   if (report.converged || report.stopped) return report;
   const bool oscillates = base::any_rank(*mesh().comm, [&] {
     return std::find(report.unsettled.begin(), report.unsettled.end(), 1) != report.unsettled.end();

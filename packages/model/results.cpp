@@ -254,6 +254,8 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   json step = {{"time", report.time},
                {"newton_iterations", report.newton_iterations},
                {"linear_iterations", solve::iterations(report.linear_solves)},
+               {"iterates", report.exchanges.iterates},
+               {"ghost_exchanges", report.exchanges.ghosts},
                {"substeps", report.substeps},
                {"cuts", report.cuts},
                {"converged", report.converged}};

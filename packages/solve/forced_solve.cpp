@@ -14,11 +14,10 @@ void add(Real factor, const BlockVector& from, BlockVector& to) {
 
 }  // namespace
 
-void ForcedSolve::jacobian(const BlockVector& x) {
+void ForcedSolve::jacobian(const fields::Evaluation& x) {
   problem_.jacobian(x);
-  if (!solve_.forcing()) return;
-  if (x_.empty()) x_ = fields::create_like(x);
-  fields::copy(x, x_);
+  x_ = x;
+  end_ = {};
 }
 
 void ForcedSolve::apply(const BlockVector& x, BlockVector& y) const {
@@ -34,12 +33,13 @@ void ForcedSolve::apply(const BlockVector& x, BlockVector& y) const {
   }
 }
 
-std::size_t ForcedSolve::states_after(const BlockVector& dx) const {
-  auto x = fields::create_like(x_);
-  fields::copy(x_, x);
+std::size_t ForcedSolve::states_after(const BlockVector& dx) {
+  auto x = fields::create_like(dx);
+  fields::copy(x_.x(), x);
   add(-1, dx, x);
+  end_ = x;
   auto& globalisation = problem_.globalisation();
-  return globalisation.state_hash(globalisation.states(x));
+  return globalisation.state_hash(globalisation.states(end_));
 }
 
 Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
@@ -70,7 +70,8 @@ LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tole
     report.residual *= more.residual;
     report.converged = more.converged;
     report.reason = more.reason;
-    if (more.converged) add(1, correction, dx);
+    if (!more.converged) break;
+    add(1, correction, dx);
     const auto refined = states_after(dx);
     if (refined == states) break;
     states = refined;

@@ -1,6 +1,8 @@
 // Solves with the Jacobian, only as accurate as Newton's method requires.
 #pragma once
 
+#include <utility>
+
 #include "solve/condensed_solve.hpp"
 
 namespace sprekk::solve {
@@ -24,11 +26,13 @@ class ForcedSolve {
   }
 
   /// Fills problem.matrix() at x. update() then prepares solves.
-  void jacobian(const BlockVector& x);
+  void jacobian(const fields::Evaluation& x);
   void update() { solve_.update(); }
 
   /// Computes dx = A^-1 b. The Newton step is from x to x - dx.
   LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
+  /// Returns the evaluation at x - dx, once, if the last solve() needed it, else an empty one. Local.
+  fields::Evaluation take_end() { return std::exchange(end_, {}); }
 
   /// Computes y = A x with A = problem.matrix(), except for rows of constrained unknowns, which are identity.
   void apply(const BlockVector& x, BlockVector& y) const;
@@ -36,12 +40,12 @@ class ForcedSolve {
   Real tolerance() const { return solve_.tolerance(); }
 
  private:
-  std::size_t states_after(const BlockVector& dx) const;
+  std::size_t states_after(const BlockVector& dx);
   Real accuracy_without_change(const BlockVector& b);
 
   BlockProblem& problem_;
   CondensedSolve& solve_;
-  BlockVector x_;
+  fields::Evaluation x_, end_;
   Real error_ = 0;   // largest measure of the previous iteration; 0: none
   Real enough_ = 0;  // tolerance of Newton's method
 };

@@ -4,9 +4,7 @@
 #include <NOX_Direction_UserDefinedFactory.H>
 #include <NOX_LineSearch_UserDefinedFactory.H>
 #include <NOX_StatusTest_Generic.H>
-#include <NOX_Thyra.H>
 
-#include <Thyra_TpetraThyraWrappers.hpp>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -16,7 +14,6 @@
 #include "base/parameters.hpp"
 #include "base/text.hpp"
 #include "solve/newton_step.hpp"
-#include "solve/thyra_model.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -34,9 +31,9 @@ class MeasureTest : public NOX::StatusTest::Generic {
       : problem_(problem), options_(options), picard_(picard), step_(step), report_(report) {}
 
   StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
-    const auto& group = solver.getSolutionGroup();
+    const auto& group = dynamic_cast<const NoxGroup&>(solver.getSolutionGroup());
     report_.iterations = solver.getNumIterations();
-    report_.measures = problem_.measures(solution_of(group), residual_of(group));
+    report_.measures = problem_.measures(group.x(), group.f());
     report_.history.push_back(report_.measures);
     const Measure* worst = nullptr;
     for (const auto& measure : report_.measures)
@@ -160,16 +157,6 @@ void refuse_unread(const Teuchos::ParameterList& given, const Teuchos::Parameter
   }
 }
 
-/// Returns the group at x without a Jacobian. The model must outlive it.
-RCP<NOX::Abstract::Group> group_of(const ThyraModel& model, const BlockVector& x) {
-  const RCP<Thyra::LinearOpBase<Real>> jacobian;
-  const RCP<const Thyra::LinearOpWithSolveFactoryBase<Real>> solver;
-  const RCP<Thyra::PreconditionerBase<Real>> preconditioner;
-  const RCP<Thyra::PreconditionerFactoryBase<Real>> preconditioners;
-  return rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(model.make_vector(x)), Teuchos::rcpFromRef(model), jacobian,
-                                   solver, preconditioner, preconditioners));
-}
-
 /// Solves, and converts exceptions of NOX, including plain text, to an Error.
 StatusType solve_by(RCP<NOX::Solver::Generic>& solver, const RCP<NOX::Abstract::Group>& group,
                     const RCP<NOX::StatusTest::Generic>& test, const RCP<Teuchos::ParameterList>& parameters,
@@ -226,16 +213,24 @@ Newton::Newton(BlockProblem& problem, const NewtonOptions& options, RCP<base::Ti
       options_(options),
       linear_(std::make_unique<CondensedSolve>(problem, stopping(options.linear_solver, options.should_stop, solving_),
                                                timers)),
-      forced_(std::make_unique<ForcedSolve>(problem, *linear_)),
-      model_(std::make_unique<ThyraModel>(problem)) {}
+      forced_(std::make_unique<ForcedSolve>(problem, *linear_)) {}
 
 Newton::~Newton() = default;
 
 NewtonReport Newton::solve(BlockVector& x) {
+  auto start = fields::create_like(x);
+  fields::copy(x, start);
+  Evaluation at(start);
+  auto report = solve(at);
+  fields::copy(at.x(), x);
+  return report;
+}
+
+NewtonReport Newton::solve(Evaluation& x) {
   NewtonReport report;
   forced_->start(options_.tolerance);
   problem_.globalisation().damp(0, {});
-  const auto group = group_of(*model_, x);
+  const RCP<NOX::Abstract::Group> group = rcp(new NoxGroup(problem_, x));
   std::optional<Picard> picard(std::in_place, problem_, x);
   const auto step = rcp(new NewtonStep(problem_, *forced_, *picard));
   const auto& found = step->report();
@@ -253,7 +248,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   report.linear_solves = found.linear_solves;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.stopped) return report;
-  fields::copy(solution_of(solver->getSolutionGroup()), x);
+  x = dynamic_cast<const NoxGroup&>(solver->getSolutionGroup()).x();
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   if (report.iterations > 0) {
     const bool damped = base::on_any_rank(*problem_.comm(), found.damped);
@@ -273,7 +268,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   return report;
 }
 
-LinearReport Newton::answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
+LinearReport Newton::answer(const Evaluation& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
   if (linear_->n_setups() == 0 || factors_ == Factors::damped) {
     problem_.globalisation().damp(0, {});
     problem_.jacobian(x);

@@ -13,11 +13,11 @@ namespace sprekk::solve {
 
 using fields::BlockProblem;
 using fields::BlockVector;
+using fields::Evaluation;
 using fields::Measure;
 
 class CondensedSolve;
 class ForcedSolve;
-class ThyraModel;
 
 struct NewtonOptions {
   Real tolerance = 1e-11;  ///< for each measure of the problem
@@ -55,11 +55,12 @@ class Newton {
   /// reported; x is then the last iterate. Errors in evaluations of the problem pass through. Collective; the report is
   /// the same on all ranks.
   NewtonReport solve(BlockVector& x);
+  NewtonReport solve(Evaluation& x);
 
   /// Computes dx = A^-1 b, [block], the linear response of x to small forces b. Rows of constrained unknowns are dx_i =
   /// b_i. A is the last Jacobian of a linear solve. If that was damped, A is the Jacobian at convergence, or at x after
   /// a failure. If there was none, A is the Jacobian at x. Collective.
-  LinearReport answer(const BlockVector& x, const BlockVector& b, BlockVector& dx, Real tolerance);
+  LinearReport answer(const Evaluation& x, const BlockVector& b, BlockVector& dx, Real tolerance);
 
   const CondensedSolve& linear() const { return *linear_; }
 
@@ -69,7 +70,6 @@ class Newton {
   bool solving_ = false;  // linear solves may be stopped
   std::unique_ptr<CondensedSolve> linear_;
   std::unique_ptr<ForcedSolve> forced_;
-  std::unique_ptr<ThyraModel> model_;
   /// Factors for answer(): of the last Jacobian, older than the matrix, or damped.
   enum class Factors { good, old, damped } factors_ = Factors::good;
 };

@@ -2,12 +2,9 @@
 
 #include <NOX_Abstract_Group.H>
 #include <NOX_Solver_Generic.H>
-#include <NOX_Thyra_Vector.H>
 
 #include <algorithm>
 #include <cmath>
-
-#include "solve/thyra_model.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -16,25 +13,21 @@ constexpr Real smallest_length = 1.0 / 64, least_damping = 0.1, most_damping = 1
 constexpr Real solved_part = 0.1;  // of the merit of the lagged f
 constexpr int most_frozen = 4, most_unbalanced = 3, most_restarts = 3;
 
-BlockVector nox_blocks(const NOX::Abstract::Vector& v) {
-  return solve::blocks_of(dynamic_cast<const NOX::Thyra::Vector&>(v).getThyraVector());
-}
-
 }  // namespace
-
-BlockVector solution_of(const NOX::Abstract::Group& group) { return nox_blocks(group.getX()); }
-BlockVector residual_of(const NOX::Abstract::Group& group) { return nox_blocks(group.getF()); }
 
 bool NewtonStep::compute(NOX::Abstract::Vector& direction, NOX::Abstract::Group& group, const NOX::Solver::Generic&) {
   if (!group.isF()) group.computeF();
-  linearize(group, direction);
+  linearize(dynamic_cast<const NoxGroup&>(group), direction);
   return true;
 }
 
 bool NewtonStep::compute(NOX::Abstract::Group& group, double& length, const NOX::Abstract::Vector& direction,
                          const NOX::Solver::Generic& solver) {
   length = 0;
-  Attempt attempt{group, solver.getPreviousSolutionGroup(), direction.clone(), report_.linear_solves.back().converged};
+  Attempt attempt{dynamic_cast<NoxGroup&>(group),
+                  dynamic_cast<const NoxGroup&>(solver.getPreviousSolutionGroup()),
+                  {direction.clone(), linear_.take_end()},
+                  report_.linear_solves.back().converged};
   if (!balance(attempt)) return false;
   auto taken = this->attempt(attempt);
   if (!taken) taken = damp(attempt);
@@ -43,42 +36,41 @@ bool NewtonStep::compute(NOX::Abstract::Group& group, double& length, const NOX:
   if (!taken) taken = enter_other_states(attempt);
   if (!taken) {
     if (attempt.solved) report_.failure = "no step along Newton's direction brings the iterate nearer to a solution";
-    group = attempt.from;
+    attempt.group = attempt.from;
     return false;
   }
   if (reject(attempt, *taken)) return true;
   length = taken->length;
-  accept(group, *taken);
+  accept(attempt.group, *taken);
   return true;
 }
 
 /// Computes dx = -A^-1 f with the Jacobian A at the iterate, including the present damping.
-bool NewtonStep::linearize(const NOX::Abstract::Group& group, NOX::Abstract::Vector& dx) {
+bool NewtonStep::linearize(const NoxGroup& group, NOX::Abstract::Vector& dx) {
   report_.damped = picard_.lags() || damping_ > 0 || iterates_.swings();
-  linear_.jacobian(solution_of(group));
+  linear_.jacobian(group.x());
   linear_.update();
-  auto blocks = nox_blocks(dx);
-  report_.linear_solves.push_back(linear_.solve(residual_of(group), blocks, linear_.tolerance()));
+  auto blocks = blocks_of(dx);
+  report_.linear_solves.push_back(linear_.solve(group.f(), blocks, linear_.tolerance()));
   dx.scale(-1);
   return report_.linear_solves.back().converged;
 }
 
 /// Balances motions of bodies that no contact resists. Returns false if a body has met no resistance too often.
 bool NewtonStep::balance(Attempt& attempt) {
-  auto blocks = nox_blocks(*attempt.dx);
-  const auto unresisted = attempt.solved ? globalisation_.balance(solution_of(attempt.from), blocks) : "";
+  auto blocks = blocks_of(*attempt.along.dx);
+  const auto unresisted = attempt.solved ? globalisation_.balance(attempt.from.x(), blocks, attempt.along.end) : "";
   if (const auto loose = globalisation_.loose(); !loose.empty()) report_.loose = loose;
   if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {
     report_.failure = "no resistance to the loads found: " + unresisted + ", and meets none";
     return false;
   }
-  if (attempt.solved) attempt.first = attempt.dx->clone();
   return true;
 }
 
 /// Tries the direction, and once more if this shows that the lagged problem must be searched.
-NewtonStep::Found NewtonStep::attempt(const Attempt& attempt) {
-  if (picard_.possible() && iterates_.empty()) weakens_ = globalisation_.weakens(solution_of(attempt.from));
+NewtonStep::Found NewtonStep::attempt(Attempt& attempt) {
+  if (picard_.possible() && iterates_.empty()) weakens_ = globalisation_.weakens(attempt.from.x());
   if (!attempt.solved) return {};
   auto found = try_direction(attempt);
   if (found && begins_to_struggle(*found)) found = try_direction(attempt);
@@ -87,40 +79,41 @@ NewtonStep::Found NewtonStep::attempt(const Attempt& attempt) {
 
 /// Repeats the linear solve with more damping until a step is found.
 NewtonStep::Found NewtonStep::damp(Attempt& attempt) {
+  if (attempt.solved) attempt.first = {attempt.along.dx->clone(), attempt.along.end};
   Found found;
   while (!found && damping_ < most_damping) {
     globalisation_.damp(damping_ = std::max(10 * damping_, least_damping), iterates_.swinging());
-    attempt.solved = linearize(attempt.from, *attempt.dx);
+    attempt.solved = linearize(attempt.from, *attempt.along.dx);
+    attempt.along.end = linear_.take_end();
     if (attempt.solved) found = try_direction(attempt);
   }
   return found;
 }
 
 /// Takes the full step of the lagged problem, if it was searched in vain and its coefficients may change.
-NewtonStep::Found NewtonStep::step_with_lag(const Attempt& attempt) {
-  if (!attempt.first || !struggles_ || !picard_.lags() || n_frozen_ > 0) return {};
+NewtonStep::Found NewtonStep::step_with_lag(Attempt& attempt) {
+  if (attempt.first.dx.is_null() || !struggles_ || !picard_.lags() || n_frozen_ > 0) return {};
   damping_ = 0;
-  return full(attempt, *attempt.first);
+  return full(attempt, attempt.first);
 }
 
 /// Returns to the lagged f if no step of f itself was found. Returns false if this is not possible.
 bool NewtonStep::return_to_lag(const Attempt& attempt) {
   if (!attempt.solved || !picard_.possible() || picard_.lags() || iterates_.empty()) return false;
   attempt.group = attempt.from;
-  picard_.resume(solution_of(attempt.group), 0, 0, 0);
+  picard_.resume(attempt.group.x(), 0, 0, 0);
   globalisation_.damp(damping_ = 0, iterates_.swinging());
-  attempt.group.setX(attempt.group.getX());
+  attempt.group.forget_f();
   attempt.group.computeF();
   return true;
 }
 
 /// Takes the full step if it leads to other states. The merits of distant states may differ by many orders of
 /// magnitude.
-NewtonStep::Found NewtonStep::enter_other_states(const Attempt& attempt) {
-  if (!attempt.first || picard_.possible() || n_restarts_ == most_restarts) return {};
-  const auto taken = full(attempt, *attempt.first);
-  if (!taken || globalisation_.state_hash(globalisation_.states(solution_of(attempt.group))) == iterates_.pattern())
-    return {};
+NewtonStep::Found NewtonStep::enter_other_states(Attempt& attempt) {
+  if (attempt.first.dx.is_null() || picard_.possible() || n_restarts_ == most_restarts) return {};
+  const auto taken = full(attempt, attempt.first);
+  if (!taken || globalisation_.state_hash(globalisation_.states(attempt.group.x())) == iterates_.pattern()) return {};
   ++n_restarts_;
   damping_ = 0;
   iterates_.restart();
@@ -135,10 +128,10 @@ bool NewtonStep::reject(const Attempt& attempt, Trial& taken) {
   bool back = false;
   if (lagged) {
     if (freeze(taken)) return false;
-    back = picard_.follow(solution_of(attempt.group));
+    back = picard_.follow(attempt.group.x());
     if (!picard_.lags()) iterates_.restart();
   } else if (!iterates_.empty() && !(weakens_ && picard_.agrees())) {
-    back = picard_.resume(solution_of(attempt.from), taken.length, taken.merit, iterates_.last_merit());
+    back = picard_.resume(attempt.from.x(), taken.length, taken.merit, iterates_.last_merit());
   }
   if (back) attempt.group = attempt.from;
   if (back || lagged) taken.merit = merit_of_changed_f(attempt.group);
@@ -146,45 +139,49 @@ bool NewtonStep::reject(const Attempt& attempt, Trial& taken) {
 }
 
 /// Accepts a step. Before the first full step, the linear part is not balanced, so calibration starts with its result.
-void NewtonStep::accept(NOX::Abstract::Group& group, const Trial& taken) {
+void NewtonStep::accept(NoxGroup& group, const Trial& taken) {
   if (taken.length == 1 && damping_ > 0) damping_ = damping_ > least_damping ? damping_ / 10 : 0;
-  const auto x = solution_of(group);
-  const bool changed = globalisation_.calibrate(x, iterates_.empty());
+  const bool changed = globalisation_.calibrate(group.x(), iterates_.empty());
   const Real merit = changed ? merit_of_changed_f(group) : taken.merit;
-  auto states = globalisation_.states(x);
+  auto states = globalisation_.states(group.x());
   const auto pattern = globalisation_.state_hash(states);
   iterates_.accept({std::move(states), pattern, merit, taken.length, picard_.lags(), changed});
   globalisation_.damp(damping_, iterates_.swinging());
   report_.stagnant = is_stagnant();
 }
 
-NewtonStep::Found NewtonStep::try_direction(const Attempt& attempt) const {
-  return searches() ? search(attempt, *attempt.dx) : full(attempt, *attempt.dx);
-}
-
-NewtonStep::Found NewtonStep::search(const Attempt& attempt, const NOX::Abstract::Vector& dx) const {
+NewtonStep::Found NewtonStep::try_direction(Attempt& attempt) const {
+  if (!searches()) return full(attempt, attempt.along);
   for (Real a = 1; a >= smallest_length; a /= 2) {
-    attempt.group.computeX(attempt.from, dx, a);
-    const Real m = merit(attempt.group);
+    const Real m = merit_after(attempt, attempt.along, a);
     if (std::isfinite(m) && m <= (1 - 1e-3 * a) * iterates_.limit(picard_.lags())) return Trial{a, m};
   }
   return {};
 }
 
-NewtonStep::Found NewtonStep::full(const Attempt& attempt, const NOX::Abstract::Vector& dx) const {
-  attempt.group.computeX(attempt.from, dx, 1);
-  const Real m = merit(attempt.group);
+NewtonStep::Found NewtonStep::full(const Attempt& attempt, Direction& along) const {
+  const Real m = merit_after(attempt, along, 1);
   if (!std::isfinite(m)) return {};
   return Trial{1, m};
 }
 
-Real NewtonStep::merit(NOX::Abstract::Group& group) const {
-  group.computeF();
-  return problem_.merit(solution_of(group), residual_of(group));
+/// Moves to the end of a step. The end of the full step is evaluated once.
+Real NewtonStep::merit_after(const Attempt& attempt, Direction& along, Real length) const {
+  if (length == 1 && !along.end.empty())
+    attempt.group.move_to(along.end);
+  else
+    attempt.group.computeX(attempt.from, *along.dx, length);
+  if (length == 1) along.end = attempt.group.x();
+  return merit(attempt.group);
 }
 
-Real NewtonStep::merit_of_changed_f(NOX::Abstract::Group& group) const {
-  group.setX(group.getX());  // invalidates f
+Real NewtonStep::merit(NoxGroup& group) const {
+  group.computeF();
+  return problem_.merit(group.x(), group.f());
+}
+
+Real NewtonStep::merit_of_changed_f(NoxGroup& group) const {
+  group.forget_f();
   return merit(group);
 }
 

@@ -11,6 +11,7 @@
 
 #include "solve/forced_solve.hpp"
 #include "solve/iterates.hpp"
+#include "solve/nox_group.hpp"
 #include "solve/picard.hpp"
 
 namespace sprekk::solve {
@@ -58,12 +59,16 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   const Iterates& iterates() const { return iterates_; }
 
  private:
-  struct Attempt {
-    NOX::Abstract::Group& group;       ///< the last trial
-    const NOX::Abstract::Group& from;  ///< the last iterate
+  struct Direction {
     RCP<NOX::Abstract::Vector> dx;
-    bool solved;                            ///< the linear system of dx was solved
-    RCP<NOX::Abstract::Vector> first = {};  ///< the balanced direction without further damping; null: not solved
+    Evaluation end;  ///< after the full step; empty: not yet evaluated
+  };
+  struct Attempt {
+    NoxGroup& group;       ///< the last trial
+    const NoxGroup& from;  ///< the last iterate
+    Direction along;
+    bool solved;           ///< the linear system of the direction was solved
+    Direction first = {};  ///< the balanced direction without further damping; null: not solved, or it found a step
   };
   struct Trial {
     Real length, merit;
@@ -71,21 +76,21 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   using Found = std::optional<Trial>;
 
   // the steps, in this order
-  bool linearize(const NOX::Abstract::Group& group, NOX::Abstract::Vector& dx);
+  bool linearize(const NoxGroup& group, NOX::Abstract::Vector& dx);
   bool balance(Attempt& attempt);
-  Found attempt(const Attempt& attempt);
+  Found attempt(Attempt& attempt);
   Found damp(Attempt& attempt);
-  Found step_with_lag(const Attempt& attempt);
+  Found step_with_lag(Attempt& attempt);
   bool return_to_lag(const Attempt& attempt);
-  Found enter_other_states(const Attempt& attempt);
+  Found enter_other_states(Attempt& attempt);
   bool reject(const Attempt& attempt, Trial& taken);
-  void accept(NOX::Abstract::Group& group, const Trial& taken);
+  void accept(NoxGroup& group, const Trial& taken);
 
-  Found try_direction(const Attempt& attempt) const;
-  Found search(const Attempt& attempt, const NOX::Abstract::Vector& dx) const;
-  Found full(const Attempt& attempt, const NOX::Abstract::Vector& dx) const;
-  Real merit(NOX::Abstract::Group& group) const;
-  Real merit_of_changed_f(NOX::Abstract::Group& group) const;
+  Found try_direction(Attempt& attempt) const;
+  Found full(const Attempt& attempt, Direction& along) const;
+  Real merit_after(const Attempt& attempt, Direction& along, Real length) const;
+  Real merit(NoxGroup& group) const;
+  Real merit_of_changed_f(NoxGroup& group) const;
   bool searches() const { return !picard_.lags() || (struggles_ && !picard_.fresh()); }
   bool begins_to_struggle(const Trial& taken);
   bool freeze(const Trial& taken);
@@ -104,9 +109,5 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   bool weakens_ = false;    // see Globalisation::weakens()
   bool struggles_ = false;  // a full step with lagged coefficients increased the merit
 };
-
-/// Return the unknowns or the residual of a NOX group over Thyra, without copying. The result is read-only.
-BlockVector solution_of(const NOX::Abstract::Group& group);
-BlockVector residual_of(const NOX::Abstract::Group& group);
 
 }  // namespace sprekk::solve

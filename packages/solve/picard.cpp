@@ -12,14 +12,14 @@ constexpr Real least_step = 0.25, most_growth = 1e3;
 
 }  // namespace
 
-Picard::Picard(BlockProblem& problem, const BlockVector& x) : problem_(problem) {
+Picard::Picard(BlockProblem& problem, const Evaluation& x) : problem_(problem) {
   problem_.lag(Lag::none, x);
   possible_ = lags_ = problem_.lag(Lag::follow, x) >= 0;
 }
 
 bool Picard::agrees() const { return near_ < little; }
 
-bool Picard::follow(const BlockVector& x) {
+bool Picard::follow(const Evaluation& x) {
   const bool first = n_++ == 0;
   fresh_ = first;
   const Real away = problem_.lag(Lag::follow, x);
@@ -34,7 +34,7 @@ bool Picard::follow(const BlockVector& x) {
   return false;
 }
 
-bool Picard::resume(const BlockVector& from, Real step, Real merit, Real merit_before) {
+bool Picard::resume(const Evaluation& from, Real step, Real merit, Real merit_before) {
   if (step >= least_step && merit <= most_growth * merit_before) return false;
   problem_.lag(Lag::follow, from);
   lags_ = fresh_ = true;

@@ -6,7 +6,7 @@
 namespace sprekk::solve {
 
 using fields::BlockProblem;
-using fields::BlockVector;
+using fields::Evaluation;
 
 /// Picard iteration for coefficients that grow with a high power of an unknown. Newton's method linearises such
 /// coefficients where the unknown is small. Injected quantities would remain in one place, where the unknown grows far
@@ -22,7 +22,7 @@ class Picard {
  public:
   /// Starts the iteration at x. If f has such coefficients, they lag until this object is destroyed. Refers to the
   /// problem.
-  Picard(BlockProblem& problem, const BlockVector& x);
+  Picard(BlockProblem& problem, const Evaluation& x);
   ~Picard() { problem_.lag(BlockProblem::Lag::none, {}); }
   Picard(const Picard&) = delete;
   Picard& operator=(const Picard&) = delete;
@@ -34,12 +34,12 @@ class Picard {
   int n_steps() const { return n_; }           ///< number of steps with fixed coefficients
 
   /// Updates the coefficients after a full step of the lagged f to x. Returns whether the step is rejected.
-  bool follow(const BlockVector& x);
+  bool follow(const Evaluation& x);
   /// Replaces follow() while the lagged problem is not solved: the coefficients remain frozen.
   void hold() { ++n_; }
   /// Checks a step of f itself from `from` with the step length `step`. Returns whether it is rejected; f then lags
   /// again.
-  bool resume(const BlockVector& from, Real step, Real merit, Real merit_before);
+  bool resume(const Evaluation& from, Real step, Real merit, Real merit_before);
 
  private:
   BlockProblem& problem_;

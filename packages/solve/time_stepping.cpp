@@ -14,7 +14,7 @@ constexpr int most_tethers = 60, least_cuts = 3, most_settlings = 4;
 
 struct Release {
   BlockProblem& problem;
-  const BlockVector& x;
+  const Evaluation& x;
   ~Release() { problem.globalisation().tether(0, x); }
 };
 
@@ -32,7 +32,7 @@ void TimeSteppingOptions::describe(base::Section& section) {
                 "relaxed to zero; only after three bisections if shorter steps are easier to solve");
 }
 
-NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {
+NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
   auto newton = newton_.solve(x);
   report.newton_iterations += newton.iterations;
   append(newton.linear_solves, report.linear_solves);
@@ -43,9 +43,8 @@ NewtonReport TimeStepper::solve(BlockVector& x, StepReport& report) {
 /// finds the state, from which new springs start, with a lower stiffness while Newton's method converges. The last
 /// solve is without springs: after a weak spring or, if that fails, after the weakest. Thin layers yield to much
 /// smaller forces.
-NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
-  auto place = fields::create_like(x);
-  fields::copy(x, place);
+NewtonReport TimeStepper::relax(Evaluation& x, StepReport& report) {
+  auto place = x;
   const Release release{problem_, x};  // also if an evaluation throws
   Real stiffness = first_tether, enough = weak_tether;
   for (int k = 0; k < most_tethers && stiffness < most_tether; ++k) {
@@ -53,7 +52,7 @@ NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
     if (!problem_.globalisation().tether(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
     if (newton.stopped || (last && (newton.converged || enough == least_tether))) return newton;
-    fields::copy(newton.converged ? x : place, newton.converged ? place : x);
+    (newton.converged ? place : x) = newton.converged ? x : place;
     if (last)
       enough = least_tether;
     else
@@ -64,15 +63,14 @@ NewtonReport TimeStepper::relax(BlockVector& x, StepReport& report) {
 
 /// Moves floating bodies to their minimum-norm position and solves again, mostly without an iteration. If this solve
 /// fails, x is restored: settle() cannot distinguish joints with very small differences.
-NewtonReport TimeStepper::settle(BlockVector& x, NewtonReport newton, int& settlings, StepReport& report) {
-  auto found = fields::create_like(x);
+NewtonReport TimeStepper::settle(Evaluation& x, NewtonReport newton, int& settlings, StepReport& report) {
   for (settlings = 0; settlings < most_settlings; ++settlings) {
-    fields::copy(x, found);
+    const auto found = x;
     if (!problem_.globalisation().settle(x)) break;
     auto moved = solve(x, report);
     if (moved.stopped) return moved;
     if (!moved.converged) {
-      fields::copy(found, x);
+      x = found;
       return solve(x, report);
     }
     newton = std::move(moved);
@@ -82,8 +80,9 @@ NewtonReport TimeStepper::settle(BlockVector& x, NewtonReport newton, int& settl
 
 StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   StepReport report;
-  auto committed = fields::create_like(x);
-  fields::copy(x, committed);
+  auto start = fields::create_like(x);
+  fields::copy(x, start);
+  Evaluation committed(start), at = committed;
   // in units of the smallest substep, so that substeps end exactly at t_to
   const long long whole = t_to > t ? 1LL << options_.max_halvings : 1;
   const Real t_from = t;
@@ -97,21 +96,22 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     size = std::min(size, whole - done);
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
-    auto newton = solve(x, report);
+    auto newton = solve(at, report);
     if (!newton.converged && !newton.stopped && !relaxed && options_.tethers && size <= tethered) {
       relaxed = true;
-      fields::copy(committed, x);
-      if (auto found = relax(x, report); found.converged || found.stopped) newton = std::move(found);
+      at = committed;
+      if (auto found = relax(at, report); found.converged || found.stopped) newton = std::move(found);
     }
     int settlings = 0;
-    if (newton.converged) newton = settle(x, std::move(newton), settlings, report);
+    if (newton.converged) newton = settle(at, std::move(newton), settlings, report);
     report.measures = newton.measures;
     if (newton.converged) {
-      problem_.commit(x);
+      problem_.commit(at);
       report.loose = problem_.globalisation().loose();
       if (settlings == most_settlings && !report.loose.empty())
         report.loose += fmt::format(" (after {} attempts its position may be inaccurate)", settlings);
-      fields::copy(x, committed);
+      fields::copy(at.x(), x);
+      committed = at;
       done += size;
       relaxed = false;
       committed_dt_ = end - report.time;
@@ -120,7 +120,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       size *= 2;
       continue;
     }
-    fields::copy(committed, x);
+    at = committed;
     report.stopped = newton.stopped;
     if (report.stopped) return report;
     if (!newton.loose.empty()) loose = newton.loose;

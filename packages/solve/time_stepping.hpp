@@ -17,6 +17,7 @@ struct StepReport {
   bool stopped = false;                     ///< by NewtonOptions::should_stop
   Real time = 0;                            ///< time of the state x
   int newton_iterations = 0;                ///< including rejected substeps
+  fields::Exchanges exchanges;              ///< likewise, set by the owner of the problem
   std::vector<LinearReport> linear_solves;  ///< likewise, [Newton iteration]
   int substeps = 0;                         ///< committed substeps
   int cuts = 0;
@@ -39,9 +40,9 @@ class TimeStepper {
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
-  NewtonReport solve(BlockVector& x, StepReport& report);
-  NewtonReport settle(BlockVector& x, NewtonReport newton, int& settlings, StepReport& report);
-  NewtonReport relax(BlockVector& x, StepReport& report);
+  NewtonReport solve(Evaluation& x, StepReport& report);
+  NewtonReport settle(Evaluation& x, NewtonReport newton, int& settlings, StepReport& report);
+  NewtonReport relax(Evaluation& x, StepReport& report);
 
   BlockProblem& problem_;
   Newton& newton_;

@@ -125,6 +125,34 @@ TEST(Fractures, GhostsAreExchangedOnce) {
   }
 }
 
+/// Residual, Jacobian, measures, contact states and commit at a state read from one exchange, also in line searches,
+/// cut steps, proximal continuation and motions of floating blocks, and with lagged coefficients of fluxes.
+TEST(Iterates, ExchangeGhostsOnce) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> scenes = {
+      {"seed/immersed_3d.xml", {}},
+      {"verification/regimes_2d.xml", {"Solver.maximum iterations=3", "Time.tethers=false"}},
+      {"contact/snap_back_2d.xml", {}},
+      {"contact/floating_2d.xml", {}},
+      {"contact/network_soft_2d.xml", {}},
+      {"poro/injection_2d.xml", {}},
+      {"flow/network_2d.xml", {}},
+      {"heat/cooling_2d.xml", {}}};
+  int cuts = 0, searched = 0;
+  for (const auto& [name, changes] : scenes) {
+    model::Model model(read_scene(name, changes), Tpetra::getDefaultComm());
+    const auto times = model.scene().time.times();
+    for (std::size_t k = 0; k < times.size() && k < 3; ++k) {
+      const auto report = model.step_to(times[k]);
+      EXPECT_EQ(report.exchanges.ghosts, report.exchanges.iterates) << name << ", t = " << times[k];
+      EXPECT_GT(report.exchanges.iterates, 0) << name;
+      cuts += report.cuts;
+      searched += report.exchanges.iterates > 1 + report.newton_iterations;
+    }
+  }
+  EXPECT_GT(cuts, 0);
+  EXPECT_GT(searched, 0);
+}
+
 TEST(Fractures, StickingSceneIsFactorisedOnce) {
   for (const char* name : {"seed/immersed_2d.xml", "seed/immersed_3d.xml"}) {
     auto scene = read_scene(name);

@@ -15,6 +15,7 @@ using fields::BlockMatrix;
 using fields::BlockProblem;
 using fields::BlockVector;
 using fields::CrsMatrix;
+using fields::Evaluation;
 using fields::LocalGroup;
 using fields::Map;
 using fields::Measure;
@@ -99,9 +100,10 @@ class GridProblem : public BlockProblem, public fields::Globalisation {
   const std::vector<Block>& blocks() const override { return blocks_; }
   const std::vector<LocalGroup>& local_groups() const override { return groups_; }
   void set_time(Real t, Real) override { t_ = t; }
-  void commit(const BlockVector&) override { ++n_commits; }
+  void commit(const Evaluation&) override { ++n_commits; }
 
-  void raw_residual(const BlockVector& x, BlockVector& r) override {
+  void raw_residual(const Evaluation& at, BlockVector& r) override {
+    const auto& x = at.x();
     stiffness_->apply(*x[0], *r[0]);
     if (!o_.faces) return;
     matrix_(0, 1)->apply(*x[1], *r[0], Teuchos::NO_TRANS, 1, 1);
@@ -114,12 +116,14 @@ class GridProblem : public BlockProblem, public fields::Globalisation {
       r[2]->replaceLocalValue(i, i % o_.d == 0 ? l - std::min(l + c * jump, 0.0) : l - kt * jump);
     }
   }
-  void residual(const BlockVector& x, BlockVector& r) override {
-    raw_residual(x, r);
+  void residual(const Evaluation& at, BlockVector& r) override {
+    raw_residual(at, r);
+    const auto& x = at.x();
     for (LocalIndex i = 0; i < LocalIndex(constrained_.extent(0)); ++i)
       if (constrained_(i)) r[0]->replaceLocalValue(i, x[0]->getData()[i] - prescribed(i));
   }
-  void jacobian(const BlockVector& x) override {
+  void jacobian(const Evaluation& at) override {
+    const auto& x = at.x();
     ++n_jacobians;
     if (!o_.faces) return;
     const auto w = jump(*x[0]);
@@ -149,17 +153,18 @@ class GridProblem : public BlockProblem, public fields::Globalisation {
   ConstView<char*> constrained(int block) const override {
     return block == 0 ? ConstView<char*>(constrained_) : ConstView<char*>();
   }
-  std::vector<Measure> measures(const BlockVector&, const BlockVector& r) override {
+  std::vector<Measure> measures(const Evaluation&, const BlockVector& r) override {
     std::vector<Measure> all;
     for (std::size_t b = 0; b < r.size(); ++b) all.push_back({blocks_[b].name, r[b]->norm2()});
     return all;
   }
-  Real merit(const BlockVector&, const BlockVector& r) override {
+  Real merit(const Evaluation&, const BlockVector& r) override {
     Real sum = 0;
     for (const auto& v : r) sum += std::pow(v->norm2(), 2);
     return sum;
   }
-  std::vector<char> states(const BlockVector& x) override {
+  std::vector<char> states(const Evaluation& at) override {
+    const auto& x = at.x();
     std::vector<char> states;
     if (!o_.faces) return states;
     const auto w = jump(*x[0]);
@@ -311,31 +316,35 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   }
   bool has_contact = true, storing = false;
   bool stores() const override { return storing; }
-  bool tether(Real stiffness, const BlockVector& x) override {
+  bool tether(Real stiffness, const Evaluation& at) override {
     tethers.push_back(stiffness);
-    anchor_.assign(x[0]->getData().begin(), x[0]->getData().end());
+    const auto values = at.x()[0]->getData();
+    anchor_.assign(values.begin(), values.end());
     return has_contact;
   }
-  std::vector<char> states(const BlockVector& x) override {
+  std::vector<char> states(const Evaluation& at) override {
+    const auto& x = at.x();
     std::vector<char> states;
     for (std::size_t i = 0; state_of && i < x[0]->getLocalLength(); ++i) states.push_back(state_of(x[0]->getData()[i]));
     return states;
   }
   std::string loose() const override { return free_body; }
-  std::string balance(const BlockVector&, BlockVector&) override { return free_body; }
+  std::string balance(const Evaluation&, BlockVector&, Evaluation&) override { return free_body; }
 
   fields::Globalisation& globalisation() override { return *this; }
   RCP<const Comm> comm() const override { return comm_; }
   const std::vector<Block>& blocks() const override { return blocks_; }
   const std::vector<LocalGroup>& local_groups() const override { return groups_; }
   void set_time(Real t, Real dt) override { t_ = t, dt_ = dt; }
-  void commit(const BlockVector&) override { committed_times.push_back(t_); }
-  void residual(const BlockVector& x, BlockVector& r) override { raw_residual(x, r); }
-  void raw_residual(const BlockVector& x, BlockVector& r) override {
+  void commit(const Evaluation&) override { committed_times.push_back(t_); }
+  void residual(const Evaluation& at, BlockVector& r) override { raw_residual(at, r); }
+  void raw_residual(const Evaluation& at, BlockVector& r) override {
+    const auto& x = at.x();
     for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i)
       r[0]->replaceLocalValue(i, f_(x[0]->getData()[i], t_, dt_) + pull(i, x[0]->getData()[i]));
   }
-  void jacobian(const BlockVector& x) override {
+  void jacobian(const Evaluation& at) override {
+    const auto& x = at.x();
     const auto local = matrix_(0, 0)->getLocalMatrixHost();
     for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i)
       local.values(i) = df_(x[0]->getData()[i], t_, dt_) + (damps.empty() ? 0 : resistance * damps.back()) + spring();
@@ -343,8 +352,8 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   const BlockMatrix& matrix() const override { return matrix_; }
   bool symmetric() const override { return true; }
   ConstView<char*> constrained(int) const override { return {}; }
-  std::vector<Measure> measures(const BlockVector&, const BlockVector& r) override { return {{"r", r[0]->normInf()}}; }
-  Real merit(const BlockVector&, const BlockVector& r) override { return std::pow(r[0]->norm2(), 2); }
+  std::vector<Measure> measures(const Evaluation&, const BlockVector& r) override { return {{"r", r[0]->normInf()}}; }
+  Real merit(const Evaluation&, const BlockVector& r) override { return std::pow(r[0]->norm2(), 2); }
   std::size_t state_hash(const std::vector<char>& states) override {
     long long here = 0, all = 0;
     for (char state : states) here += state;

@@ -70,12 +70,12 @@ class OpeningProblem : public ScalarProblem {
         lags_(lags) {}
 
   /// Updates a with a relaxation suited to the slope -3.
-  Real lag(Lag how, const BlockVector& x) override {
+  Real lag(Lag how, const Evaluation& x) override {
     if (!lags_ || how == Lag::none) {
       given_ = 0;
       return lags_ ? 0 : -1;
     }
-    const auto values = x[0]->getData();
+    const auto values = x.x()[0]->getData();
     const Real found = width(values.size() == 0 ? 0 : values[0]);
     const Real here = given_ > 0 && values.size() > 0 ? std::abs(std::log(found / given_)) : 0;
     given_ = how == Lag::widest ? 1e2 : given_ > 0 ? given_ * std::pow(found / given_, 0.25) : found;
