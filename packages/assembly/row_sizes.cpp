@@ -156,10 +156,10 @@ Scales ranges_of_balances(const Comm& comm, const std::vector<Unknown>& unknowns
 /// Relative residual of a row: (|r| - noise)/scale. The row of a prescribed unknown is its deviation.
 struct RowMeasure {
   ConstView<char*> prescribed;
-  ConstView<Real*> r,
-      diagonal;              ///< diagonal: of the first Jacobian of the attempt
-  ConstView<Real*> present;  ///< diagonal of the last Jacobian
-  View<Real*> others;        ///< round-off of other blocks; empty: zero
+  ConstView<Real*> r;
+  ConstView<Real*> diagonal;  ///< see RowSizes::diagonals_
+  ConstView<Real*> present;   ///< diagonal of the last Jacobian
+  View<Real*> others;         ///< round-off of other blocks; empty: zero
   Real unknown_scale, row_scale;
   Real driving;     ///< balances: typical difference of the unknown
   Real rounding;    ///< round-off of the unknown

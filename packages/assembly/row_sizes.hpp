@@ -33,7 +33,7 @@ class RowSizes {
   Real merit(const fields::BlockVector& x, const fields::BlockVector& r) const;
   /// Returns the Schur complement of a block; null: none.
   RCP<const fields::Vector> schur(int block) const { return schur_[block]; }
-  /// Returns the diagonal of a block of the linear part.
+  /// Returns the diagonal of a block of the linear part; of an augmented block, the augmentation constants.
   const fields::Vector& diagonal(int block) const { return *diagonals_[block]; }
 
  private:
@@ -45,10 +45,11 @@ class RowSizes {
 
   const Structure& structure_;
   const fields::BlockMatrix& matrix_;
-  fields::BlockVector weights_;    // [block] weights of merit(); null: 1/|diagonal|
-  fields::BlockVector diagonals_;  // [block] of the linear part; balances: of the first Jacobian of an attempt
-  fields::BlockVector present_;    // [block] of the last Jacobian
-  fields::BlockVector schur_;      // [block] of the last Jacobian; null: none
+  fields::BlockVector weights_;  // [block] weights of merit(); null: 1/|diagonal|
+  // [block] of the linear part; balances: of the first Jacobian of an attempt; augmented blocks: augmentation constants
+  fields::BlockVector diagonals_;
+  fields::BlockVector present_;  // [block] of the last Jacobian
+  fields::BlockVector schur_;    // [block] of the last Jacobian; null: none
   Real dt_ = 0;
   bool sized_ = false;  // diagonals_ of balances are those of this attempt
 };
