@@ -85,8 +85,9 @@ struct Each {
   static_assert((has_complete_groups<P>() && ...));
   template <class Call>
   static void call(const Call& call) {
+    static_assert((std::invocable<const Call&, P> || ...), "no physics accepts this call");
     const auto call_if_accepted = [&](auto physics) {
-      if constexpr (std::invocable<Call, decltype(physics)>) call(physics);
+      if constexpr (std::invocable<const Call&, decltype(physics)>) call(physics);
     };
     (call_if_accepted(P()), ...);
   }
