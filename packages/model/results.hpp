@@ -65,6 +65,7 @@ class Results {
   nlohmann::json reactions();
   void add_fractures(nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add(const nlohmann::json& step);
+  void start_estimator();
   void begin_stage(const std::string& name, Real time);
   void start_probes(const std::optional<EarlierResults>& earlier);
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
