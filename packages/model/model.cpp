@@ -190,6 +190,7 @@ void Model::change(const Scene& changed) {
   beginning_.reset();
   system_ = std::move(system);
   x_ = std::move(x);
+  ++n_changes_;
   start_solver();
 }
 

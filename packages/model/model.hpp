@@ -48,6 +48,8 @@ class Model {
   /// "release" of Bulk. If both scenes are equal, the call has no effect. Unsupported changes throw an Error, and the
   /// model remains unchanged.
   void change(const Scene& changed);
+  /// Returns the number of effective calls of change(), each with a new system. Stored data.
+  int n_changes() const { return n_changes_; }
 
   /// Finds an equilibrium at time() after changes of the scene, of fields or of host modules. Behaves otherwise like
   /// step_to(). Throws an Error in models with storage, which requires time.
@@ -121,6 +123,7 @@ class Model {
   std::unique_ptr<solve::TimeStepper> stepper_;
   fields::BlockVector x_;
   Real time_ = 0;
+  int n_changes_ = 0;
   std::optional<Beginning> beginning_;  // of the last step
 };
 

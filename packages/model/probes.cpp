@@ -111,12 +111,11 @@ struct Probes::Known {
   }
 };
 
-Probes::Probes(const Model& model) : model_(model) {
-  const auto& probes = model.scene().probes;
-  if (probes.empty()) return;
+Probes::Probes(const Model& model) : model_(model), probes_(model.scene().probes) {
+  if (probes_.empty()) return;
   const Known known(model);
   std::vector<std::string> errors;
-  for (const auto& [name, probe] : probes) try {
+  for (const auto& [name, probe] : probes_) try {
       add(name, probe, known);
     } catch (const Error& error) {  // the same on all ranks
       errors.push_back(fmt::format("{}: Sprekk > Probes > {}: {}", model.scene().origin, name, error.what()));
@@ -129,7 +128,7 @@ void Probes::look_again() {
   auto tables = std::exchange(tables_, {});
   looks_.clear();
   const Known known(model_);
-  for (const auto& table : tables) add(table.name, model_.scene().probes.at(table.name), known);
+  for (const auto& table : tables) add(table.name, probes_.at(table.name), known);
   tables_ = std::move(tables);
 }
 

@@ -51,6 +51,7 @@ class Probes {
   Look look(const physics::Probe& probe, const assembly::OutputField& output) const;
 
   const Model& model_;
+  std::map<std::string, physics::Probe> probes_;  // of the scene at the begin; a change of the scene may lack them
   std::vector<io::SeriesTable> tables_;
   std::vector<std::vector<Look>> looks_;  ///< [table]
 };

@@ -120,7 +120,11 @@ void write_failure(const Comm& comm, const std::string& directory, const std::st
 }
 
 Results::Results(Model& model, Scene as_read, std::string directory, const std::optional<EarlierResults>& earlier)
-    : model_(model), directory_(std::move(directory)), probes_(model), ends_{model.setting().start} {
+    : model_(model),
+      directory_(std::move(directory)),
+      probes_(model),
+      n_changes_(model.n_changes()),
+      ends_{model.setting().start} {
   const auto comm = model_.system().comm();
   io::make_directory(*comm, directory_);
   base::collectively(*comm, [&] {
@@ -250,6 +254,7 @@ bool Results::fields_are_due(const StepTaken& step) const {
 
 std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   const auto& report = taken.report;
+  if (n_changes_ != model_.n_changes()) follow_change();
   if (taken.begins_stage) begin_stage(taken.stage, taken.begin);
   json step = {{"time", report.time},
                {"newton_iterations", report.newton_iterations},
@@ -286,7 +291,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   add_error_bounds(step["fractures"], outputs);
   step.update(reactions());
   add_probes(step, outputs);
-  if (estimator_ && (model_.scene().output.error_estimate || goals_->need(last))) {
+  if (estimator_ && (!goals_ || model_.scene().output.error_estimate || goals_->need(last))) {
     const auto scope = model_.timers().scope("error estimate");
     const auto state = present_state(model_, outputs);
     const auto estimate = (*estimator_)(state);
@@ -342,10 +347,15 @@ void Results::start_estimator() {
 }
 
 /// Adapts to the changed scene of the model, and perhaps to its changed mesh.
-void Results::begin_stage(const std::string& name, Real time) {
-  const auto& mesh = model_.mesh();
+void Results::follow_change() {
+  n_changes_ = model_.n_changes();
   probes_.look_again();
   if (estimator_) start_estimator();
+}
+
+/// Adds a stage to results.json.
+void Results::begin_stage(const std::string& name, Real time) {
+  const auto& mesh = model_.mesh();
   json_["stages"].push_back({{"name", name},
                              {"time", time},
                              {"nodes", mesh.n_global_nodes},

@@ -66,6 +66,7 @@ class Results {
   void add_fractures(nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add(const nlohmann::json& step);
   void start_estimator();
+  void follow_change();
   void begin_stage(const std::string& name, Real time);
   void start_probes(const std::optional<EarlierResults>& earlier);
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
@@ -83,6 +84,7 @@ class Results {
   std::optional<estimate::Goals> goals_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   Probes probes_;
+  int n_changes_;                               // changes of the model up to the last step
   std::optional<io::SeriesFiles> series_;       // files of the probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
   std::map<std::string, std::string> units_;    // units of reactions()

@@ -2,6 +2,7 @@
 
 The scene is that of apps/hosts/time_loop.cpp: a block of 1 m with a joint, compressed until t = 1, then sheared."""
 import gc
+import json
 import sys
 import tempfile
 import threading
@@ -211,6 +212,23 @@ class Block(unittest.TestCase):
         self.model.run(output=folder)
         self.assertTrue((Path(folder) / "results.json").exists())
         self.assertTrue((Path(folder) / "bulk.pvd").exists())
+
+    def test_output_after_a_change_by_the_callback(self):
+        """The joint sticks, so that a change of its friction changes no result."""
+        scene = BLOCK | {"Output": {"error estimate": True, "vtu": False},
+                         "Probes": {"corner": {"point": [0.9, 0.9], "outputs": ["stress"]}}}
+        found = []
+        for friction in MU, 0.9 * MU:
+            folder = Path(COMM.bcast(tempfile.mkdtemp() if COMM.rank == 0 else None))
+            changes = {"Materials.smooth.friction coefficient": friction, "Boundary conditions.top.displacement": ["0", "-1e-3*t"]}
+            model = sprekk.Model(sprekk.Scene(scene, changes))
+            model.run(lambda model, step: model.change({"Materials.smooth.friction coefficient": MU}), output=str(folder))
+            COMM.Barrier()
+            steps = json.loads((folder / "results.json").read_text())["steps"]
+            found.append(([step["error_estimate"]["stress"]["relative"] for step in steps],
+                          [list(map(float, line.split(",")))[1:] for line in (folder / "probes" / "corner.csv").read_text().splitlines()[1:]]))
+        for before, after in zip(*found):
+            np.testing.assert_allclose(after, before, rtol=1e-9, atol=1e-6)
 
 
 @unittest.skipIf(COMM.size == 1, "on one rank nothing differs")
