@@ -15,8 +15,8 @@ import python_api
 LINK = re.compile(r"(\]\(|^\[[^\]\n]+\]: )(?!\w+:|#)([^)#\s]+)", re.MULTILINE)
 CODE = re.compile(r"(^```.*?^```|`[^`\n]*`)", re.DOTALL | re.MULTILINE)
 PICTURES = {".png", ".svg", ".webp"}
-LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".py": "python", ".pyi": "python", ".xml": "xml", ".rng": "xml",
-             ".cmake": "cmake", ".json": "json", ".slurm": "bash"}
+LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".py": "python", ".xml": "xml", ".cmake": "cmake", ".json": "json",
+             ".slurm": "bash"}
 GALLERY, PYTHON, CPP = "gallery.md", "api/python.md", "api/cpp/index.html"
 
 

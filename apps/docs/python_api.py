@@ -81,7 +81,7 @@ def of_class(node, source):
 
 def page(package):
     parts = ["# Python\n", "Classes and functions of the package `sprekk`. [Python](../docs/use/python.md) is an "
-             "introduction. The entries of scenes as classes: [entries.pyi](../apps/python/sprekk/entries.pyi).\n"]
+             "introduction, also to the classes of `sprekk.entries`.\n"]
     for name, file in public(package):
         source = file.read_text()
         node = next((n for n in ast.parse(source).body if getattr(n, "name", None) == name), None)

@@ -131,31 +131,6 @@ py::dict dict_of(const ParameterList& list) {
   return entries;
 }
 
-py::dict described(const base::SectionSpecification& section) {
-  py::list entries, sections;
-  for (const auto& entry : section.entries) {
-    py::dict one;
-    one["name"] = entry.name;
-    one["type"] = entry.type;
-    one["unit"] = entry.unit;
-    one["default"] = entry.value;
-    one["meaning"] = entry.meaning;
-    one["bounds"] = entry.bounds.text();
-    one["length"] = entry.bounds.length_text();
-    one["required"] = entry.required;
-    one["choices"] = entry.choices;
-    entries.append(one);
-  }
-  for (const auto& inner : section.sections) sections.append(described(inner));
-  py::dict all;
-  all["name"] = section.name;
-  all["meaning"] = section.meaning;
-  all["entries"] = entries;
-  all["sections"] = sections;
-  all["open"] = section.open;
-  return all;
-}
-
 /// Returns the columns of a curve, [state], with the titles printed by `sprekk point`.
 py::dict columns_of(const laboratory::PointCurve& curve) {
   std::ostringstream csv;
@@ -252,8 +227,7 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("origin", &SceneHandle::origin)
       .def_property_readonly("folder", &SceneHandle::folder);
 
-  m.def("specification", [] { return described(base::specification<model::Scene>("Sprekk")); });
-  m.def("point_specification", [] { return described(base::specification<laboratory::PointScene>("Sprekk")); });
+  m.def("specification", [] { return model::specification(); });
   m.def(
       "drive",
       [](const py::dict& entries, const std::string& origin, const Overrides& overrides) {

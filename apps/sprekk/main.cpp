@@ -11,12 +11,14 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>
 
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -48,7 +50,7 @@ struct Arguments {
   model::RunOptions options;
   std::string mesh_file;
   std::vector<std::string> fractures;
-  bool schema = false, quiet = false;
+  bool schema = false, json = false, quiet = false;
   model::SafetyOptions safety;
 };
 
@@ -67,8 +69,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.require_subcommand(1);
   auto* run = app.add_subcommand("run", "run a scene");
   auto* check = app.add_subcommand("check", "read and check a scene without running it");
-  app.add_subcommand("reference", "print all parameters of a scene")
-      ->add_flag("--schema", arguments.schema, "print a RELAX NG schema of scenes instead, for editors");
+  auto* reference = app.add_subcommand("reference", "print all parameters of a scene");
+  reference->add_flag("--schema", arguments.schema, "print a RELAX NG schema of scenes instead, for editors");
+  reference->add_flag("--json", arguments.json, "print the parameters as JSON instead, for programs");
   app.add_subcommand("materials", "print the material library");
   auto* point = app.add_subcommand("point", "drive one point of a joint along a path, print CSV");
   auto* mesh_info = app.add_subcommand("mesh-info", "describe a mesh of gmsh");
@@ -164,7 +167,8 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
   const auto& options = arguments.options;
   const bool speaks = comm->getRank() == 0;
   if (command == "run") return run_scene(arguments, comm);
-  if (command == "reference" && speaks) std::cout << (arguments.schema ? model::schema() : model::reference());
+  if (command == "reference" && speaks)
+    std::cout << (arguments.schema ? model::schema() : arguments.json ? model::specification() : model::reference());
   if (command == "materials" && speaks) std::cout << physics::library_markdown();
   if (command == "mesh-info")
     base::collectively(*comm, [&] {
@@ -227,8 +231,10 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a run goes on, with log.txt, when the reader of its log ends
   if (argc > 1 && std::string(argv[1]) == "run") handle_stop_signals(ask_to_stop);  // while MPI starts, too
   int n_libraries_may_read = 1;                                                     // Kokkos would answer --help, too
-  Tpetra::ScopeGuard guard(&n_libraries_may_read, &argv);
-  const auto comm = Tpetra::getDefaultComm();
+  const bool needs_ranks = argc < 2 || std::string(argv[1]) != "reference";  // a build runs it where MPI may not start
+  std::optional<Tpetra::ScopeGuard> guard;
+  if (needs_ranks) guard.emplace(&n_libraries_may_read, &argv);
+  const auto comm = needs_ranks ? Tpetra::getDefaultComm() : RCP<const Comm>(new Teuchos::SerialComm<int>());
   int status = run_command(argc, argv, comm);
   if (base::on_any_rank(*comm, output_is_lost()) && status == 0) {
     if (comm->getRank() == 0)

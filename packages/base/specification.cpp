@@ -1,6 +1,7 @@
 #include "base/specification.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
 
@@ -25,7 +26,28 @@ std::string row(const EntrySpecification& entry) {
                      cell(entry.unit), cell(entry.value), cell(allowed), cell(entry.meaning));
 }
 
+nlohmann::ordered_json json_of(const SectionSpecification& section) {
+  nlohmann::ordered_json all{{"name", section.name}, {"meaning", section.meaning}};
+  auto& entries = all["entries"] = nlohmann::ordered_json::array();
+  for (const auto& entry : section.entries)
+    entries.push_back({{"name", entry.name},
+                       {"type", entry.type},
+                       {"unit", entry.unit},
+                       {"default", entry.value},
+                       {"meaning", entry.meaning},
+                       {"bounds", entry.bounds.text()},
+                       {"length", entry.bounds.length_text()},
+                       {"required", entry.required},
+                       {"choices", entry.choices}});
+  auto& sections = all["sections"] = nlohmann::ordered_json::array();
+  for (const auto& inner : section.sections) sections.push_back(json_of(inner));
+  all["open"] = section.open;
+  return all;
+}
+
 }  // namespace
+
+std::string to_json(const SectionSpecification& section) { return json_of(section).dump(1); }
 
 std::string to_markdown(const SectionSpecification& section, const std::string& path) {
   std::string rows, inner;

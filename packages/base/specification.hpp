@@ -1,4 +1,4 @@
-// Specification of the parameters of a program as data, and its output as Markdown and as an XML schema.
+// Specification of the parameters of a program as data, and its output as Markdown, as JSON and as an XML schema.
 #pragma once
 
 #include <string>
@@ -31,6 +31,9 @@ struct SectionSpecification {
 /// Returns Markdown with a table for each section and a row for each entry. `path` is the path of the section, "Sprekk
 /// > Solver". User-defined names are printed as NAME.
 std::string to_markdown(const SectionSpecification& section, const std::string& path);
+
+/// Returns JSON with the members of both structs. `bounds` and `length` are texts, `default` is the value.
+std::string to_json(const SectionSpecification& section);
 
 /// Returns a RELAX NG schema (XML syntax) of files whose outermost list is any of `roots`. It contains names with
 /// their meanings, types, choices, and required entries of present sections. It does not check bounds and duplicate

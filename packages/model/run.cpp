@@ -356,6 +356,8 @@ std::string reference() {
          base::to_markdown(base::specification<Scene>("Sprekk"), "Sprekk") + base::to_markdown(point, "Sprekk > Point");
 }
 
+std::string specification() { return base::to_json(base::specification<Scene>("Sprekk")); }
+
 std::string schema() {
   return base::to_relax_ng(
       {base::specification<Scene>("Sprekk"), base::specification<laboratory::PointScene>("Sprekk")});

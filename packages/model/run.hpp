@@ -55,6 +55,9 @@ std::string mesh_info(const std::string& path, const std::vector<std::string>& f
 /// Returns all parameters of a scene, as Markdown.
 std::string reference();
 
+/// Returns all parameters of a scene, as JSON; see base::to_json().
+std::string specification();
+
 /// Returns a RELAX NG schema of scenes, also for read_point_scene().
 std::string schema();
 

@@ -103,6 +103,7 @@ class Packages(unittest.TestCase):
         version = re.search(r"project\(Sprekk VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
         self.assertIn(version, self.user("sprekk --version"))
         self.assertNotIn("./sprekk", self.user("sprekk --help"))
+        self.user("sprekk reference --schema | cmp - /usr/lib/sprekk/docs/sprekk.rng")
         self.user(f"sprekk check {XML}/seed/push_2d.xml")
         self.user(f"sprekk run {XML}/seed/push_3d.xml --output one")
         self.user(f"sprekk run {XML}/seed/push_3d.xml --ranks 2 --output two")
@@ -123,6 +124,7 @@ class Packages(unittest.TestCase):
     def test_3_python(self):
         (self.debian.folder / "home/user/model.py").write_text(MODEL)
         self.assertIn("/usr/lib/python3", self.user("python3 model.py"))
+        self.assertIn("class Mesh(Section)", self.user("cat /usr/lib/python3*/dist-packages/sprekk/entries.pyi"))
         self.assertEqual(self.user("sprekk python --ranks 2 model.py").count("/usr/lib/python3"), 2)
         network = f"import sprekk; sprekk.Model(sprekk.Scene('{XML}/networks/outcrop_2d.xml'))"
         self.user(f'python3 -c "{network}"')

@@ -13,16 +13,21 @@ SCENES = [*sorted((ROOT / "xml").rglob("*.xml")), *sorted((ROOT / "docs").glob("
 
 @unittest.skipUnless(shutil.which("xmllint"), "xmllint is not installed (package libxml2-utils)")
 class Schema(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.schema = self.folder / "sprekk.rng"
+        self.schema.write_text(self.call("reference", "--schema")[0])
+
     def is_valid(self, text):
         path = self.folder / "scene.xml"
         path.write_text(text)
-        done = subprocess.run(["xmllint", "--noout", "--relaxng", ROOT / "docs" / "sprekk.rng", path],
+        done = subprocess.run(["xmllint", "--noout", "--relaxng", self.schema, path],
                               capture_output=True, text=True)
         self.assertIn(done.returncode, (0, 3), done.stderr)  # 3: invalid file; other statuses: failure of xmllint
         return done.returncode == 0
 
     def test_meanings_are_those_of_the_reference(self):
-        schema = ElementTree.parse(ROOT / "docs" / "sprekk.rng")
+        schema = ElementTree.parse(self.schema)
         in_schema = {one.text for one in schema.iter("{http://relaxng.org/ns/compatibility/annotations/1.0}documentation")}
         rows = re.findall(r"^\|.*(?<!\\)\| (.*) \|$", (ROOT / "docs" / "use" / "reference.md").read_text(), re.MULTILINE)
         meanings = {row.replace("\\|", "|") for row in rows} - {"meaning"}
