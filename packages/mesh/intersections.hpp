@@ -1,4 +1,4 @@
-// Intersections of fractures in a distributed mesh, for output. hierarchy.hpp contains more for a mesh on one rank.
+// Intersections of fractures in a distributed mesh, for output.
 #pragma once
 
 #include <vector>
