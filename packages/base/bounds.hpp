@@ -38,9 +38,7 @@ class Bounds {
 
 inline Bounds any() { return {}; }  ///< every finite number
 inline Bounds at_least(Real low) { return Bounds().from(low); }
-inline Bounds at_most(Real high) { return Bounds().to(high); }
 inline Bounds greater_than(Real low) { return Bounds().above(low); }
-inline Bounds less_than(Real high) { return Bounds().below(high); }
 inline Bounds between(Real low, Real high) { return Bounds().from(low).to(high); }  ///< ends included
 inline Bounds positive() { return greater_than(0); }
 inline Bounds positive_or_infinite() { return positive().or_infinite(); }

@@ -31,12 +31,3 @@ void collectively(const Comm& comm, const std::function<void()>& work);
   do {                                                                 \
     if (!(condition)) throw ::sprekk::Error(fmt::format(__VA_ARGS__)); \
   } while (false)
-
-/// Check for inner loops of host code, active in builds with SPREKK_DEBUG_CHECKS only.
-#ifdef SPREKK_DEBUG_CHECKS
-#define SPREKK_DEBUG_CHECK(condition, ...) SPREKK_CHECK(condition, __VA_ARGS__)
-#else
-#define SPREKK_DEBUG_CHECK(condition, ...) \
-  do {                                     \
-  } while (false)
-#endif

@@ -380,8 +380,8 @@ TEST(Bounds, say_what_they_allow) {
   EXPECT_EQ(any().or_infinite().text(), "finite or infinite");
   EXPECT_EQ(greater_than(-1).below(2).text(), "greater than -1 and less than 2");
   EXPECT_EQ(positive().to(1).text(), "positive and at most 1");
-  EXPECT_EQ(at_most(3).text(), "at most 3");
-  EXPECT_TRUE(less_than(1).contains(0.999) && !less_than(1).contains(1) && at_most(1).contains(1));
+  EXPECT_EQ(Bounds().to(3).text(), "at most 3");
+  EXPECT_TRUE(Bounds().below(1).contains(0.999) && !Bounds().below(1).contains(1) && Bounds().to(1).contains(1));
   EXPECT_TRUE(!positive().contains(0) && at_least(0).contains(0) && !at_least(0).contains(-1e-300));
   EXPECT_TRUE(!any().contains(NAN) && !any().contains(INFINITY) && !any().or_infinite().contains(-INFINITY));
   EXPECT_TRUE(positive_or_infinite().contains(INFINITY) && !positive_or_infinite().contains(NAN));
