@@ -3,6 +3,7 @@
 #include "base/heap.hpp"
 #include "base/memory.hpp"
 #include "base/over_ranks.hpp"
+#include "base/text.hpp"
 #include "laboratory/point.hpp"
 #include "model/factor_of_safety.hpp"
 #include "model/network.hpp"
@@ -182,8 +183,8 @@ int execute(const std::string& command, const Arguments& arguments, RCP<const Co
   }
   if (command == "directory" && speaks) std::cout << model::default_directory(options) << '\n';
   if (command == "check") {
-    model::check(options, comm);
-    if (speaks) std::cout << options.scene << ": no errors\n";
+    const auto n = model::check(options, comm);
+    if (speaks) fmt::print("{}: no errors{}\n", options.scene, n == 0 ? "" : ", " + base::counted(n, "warning"));
   }
   return 0;
 }

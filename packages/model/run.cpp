@@ -327,9 +327,9 @@ Ending run(const RunOptions& options, RCP<const Comm> comm) {
   }
 }
 
-void check(const RunOptions& options, RCP<const Comm> comm) {
+std::size_t check(const RunOptions& options, RCP<const Comm> comm) {
   const Scene scene = read_scene(*comm, options.scene, options.overrides);
-  naming_file(options.scene, [&] {
+  return naming_file(options.scene, [&] {
     Model model(scene, comm);
     model.system().set_time(scene.time.times().front(), scene.time.times().front() - scene.time.start);
     const Probes probes(model);
@@ -337,6 +337,7 @@ void check(const RunOptions& options, RCP<const Comm> comm) {
     if (options.strict) base::throw_errors(warnings);
     base::Log log(*comm, false);
     for (const auto& warning : warnings) log.warning("{}", warning);
+    return warnings.size();
   });
 }
 

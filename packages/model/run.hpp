@@ -45,9 +45,9 @@ enum class Ending {
 /// run is an error too and remains unchanged. Collective.
 Ending run(const RunOptions& options, RCP<const Comm> comm);
 
-/// Reads and checks a scene and builds its mesh and equation system, without computation. Throws like run().
-/// Collective.
-void check(const RunOptions& options, RCP<const Comm> comm);
+/// Reads and checks a scene and builds its mesh and equation system, without computation. Prints the warnings and
+/// returns their number. Throws like run(). Collective.
+std::size_t check(const RunOptions& options, RCP<const Comm> comm);
 
 /// Describes the content of a gmsh file; the named physical groups are fractures. Not collective.
 std::string mesh_info(const std::string& path, const std::vector<std::string>& fractures);
