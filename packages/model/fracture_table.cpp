@@ -191,12 +191,22 @@ std::string to_csv(const json& described, const std::vector<FractureColumn>& col
   };
   const std::vector<std::pair<const char*, const char*>> known = {{"strike", "degree"}, {"dip", "degree"}};
   const auto is_told = [&](const char* entry) { return !described.empty() && described[0].contains(entry); };
+  /// Areas in 2D are lengths.
+  const auto title = [](const FractureColumn& column) {
+    const auto name = column.full_name();
+    return column.unit == "m" && name.rfind("area", 0) == 0 ? "length" + name.substr(4) : name;
+  };
+  std::vector<Real> rounding;  // [column] of the largest value
+  for (const auto& column : columns) {
+    rounding.push_back(0);
+    for (const Real value : column.values) rounding.back() = std::max(rounding.back(), 1e-14 * std::abs(value));
+  }
   std::string text = "name,set";
   for (const auto& [entry, unit] : known)
     if (is_told(entry)) text += fmt::format(",{} [{}]", entry, unit);
   for (const auto& column : columns)
     for (int c = 0; c < column.n_components && column.frame != "global"; ++c)
-      text += fmt::format(",{}{} [{}]", column.full_name(),
+      text += fmt::format(",{}{} [{}]", title(column),
                           column.n_components == 1 ? ""
                           : c == 0                 ? " n"
                                    : fmt::format(" t{}", column.n_components == 2 ? "" : std::to_string(c)),
@@ -206,9 +216,11 @@ std::string to_csv(const json& described, const std::vector<FractureColumn>& col
     text += quoted(described[k]["name"]) + ',' + quoted(described[k]["set"]);
     for (const auto& [entry, unit] : known)
       if (is_told(entry)) fmt::format_to(std::back_inserter(text), ",{}", described[k][entry].get<Real>());
-    for (const auto& column : columns)
-      for (int c = 0; c < column.n_components && column.frame != "global"; ++c)
-        fmt::format_to(std::back_inserter(text), ",{}", column.values[k * column.n_components + c]);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      for (int c = 0; c < columns[i].n_components && columns[i].frame != "global"; ++c) {
+        const Real value = columns[i].values[k * columns[i].n_components + c];
+        fmt::format_to(std::back_inserter(text), ",{}", std::abs(value) < rounding[i] ? 0 : value);
+      }
     text += '\n';
   }
   return text;
@@ -225,10 +237,11 @@ std::vector<std::string> digest(const json& described, const std::vector<Fractur
     std::sort(found.begin(), found.end());
     constexpr std::size_t told = 12;
     auto line =
-        fmt::format("{}: {} of {} fractures", column.name.substr(prefix.size()), found.size(), described.size());
+        fmt::format("{} on {} of {} fractures", column.name.substr(prefix.size()), found.size(), described.size());
     for (std::size_t i = 0; i < std::min(told, found.size()); ++i)
-      line += fmt::format("{} \"{}\" ({:.3g} %)", i == 0 ? ":" : ",",
-                          described[found[i].second]["name"].get<std::string>(), -100 * found[i].first);
+      line += fmt::format("{} \"{}\" ({:.3g} %{})", i == 0 ? ":" : ",",
+                          described[found[i].second]["name"].get<std::string>(), -100 * found[i].first,
+                          i == 0 ? " of its area" : "");
     lines.push_back(line + (found.size() > told ? ", ..." : ""));
   }
   return lines;

@@ -42,11 +42,12 @@ nlohmann::json units(const std::vector<FractureColumn>& columns);
 nlohmann::json described_singles(const mesh::Mesh& mesh);
 
 /// Writes the table of single fractures as CSV text: one line per fracture, with the entries of described_singles() and
-/// the columns. Column titles contain units.
+/// the columns. Column titles contain units; areas in 2D have the title `length`. Values below 1e-14 of the largest of
+/// their column are written as 0.
 std::string to_csv(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 
-/// Returns one line per contact state, `open: 2 of 12 fractures: "a" (100 %), "b" (35 %)`. Fractures are ordered by
-/// their share of the area in this state, largest first.
+/// Returns one line per contact state, `slip on 2 of 12 fractures: "a" (100 % of its area), "b" (35 %)`. Fractures are
+/// ordered by their share of the area in this state, largest first.
 std::vector<std::string> digest(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 
 }  // namespace sprekk::model

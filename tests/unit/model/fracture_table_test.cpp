@@ -62,8 +62,8 @@ TEST(FractureTable, HasAreasOfClasses) {
   EXPECT_EQ(columns[4].name, "fraction_high");
   EXPECT_THAT(columns[4].values, ElementsAre(DoubleNear(0.5, 1e-14), 0));
   EXPECT_THAT(digest(described_singles(mesh), columns),
-              ElementsAre("low: 2 of 2 fractures: \"short\" (100 %), \"fault\" (50 %)",
-                          "high: 1 of 2 fractures: \"fault\" (50 %)"));
+              ElementsAre("low on 2 of 2 fractures: \"short\" (100 % of its area), \"fault\" (50 %)",
+                          "high on 1 of 2 fractures: \"fault\" (50 % of its area)"));
 }
 
 TEST(FractureTable, HasIntegralsAndDerivedValues) {
@@ -114,12 +114,16 @@ TEST(FractureTable, DescribesSingleFractures) {
 }
 
 TEST(FractureTable, IsWrittenAsCsv) {
-  const nlohmann::json described = {{{"name", "a, \"b\""}, {"set", "s"}, {"strike", 90.0}}};
-  const std::vector<FractureColumn> columns = {
-      {"area", "", "m", 1, {2}}, {"mean_v", "global", "Pa", 2, {5, 6}}, {"mean_v", "local", "Pa", 2, {-3, 0.5}}};
+  const nlohmann::json described = {{{"name", "a, \"b\""}, {"set", "s"}, {"strike", 90.0}},
+                                    {{"name", "c"}, {"set", "s"}, {"strike", 0.0}}};
+  const std::vector<FractureColumn> columns = {{"area", "", "m", 1, {2, 1}},
+                                               {"area_slip", "", "m^2", 1, {2, 1}},
+                                               {"mean_v", "global", "Pa", 2, {5, 6, 7, 8}},
+                                               {"mean_v", "local", "Pa", 2, {-3, 0.5, 1e-13, -1e-20}}};
   EXPECT_EQ(to_csv(described, columns),
-            "name,set,strike [degree],area [m],mean_v_local n [Pa],mean_v_local t [Pa]\n"
-            "\"a, \"\"b\"\"\",s,90,2,-3,0.5\n");
+            "name,set,strike [degree],length [m],area_slip [m^2],mean_v_local n [Pa],mean_v_local t [Pa]\n"
+            "\"a, \"\"b\"\"\",s,90,2,2,-3,0.5\n"
+            "c,s,0,1,1,1e-13,0\n");
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(FactorOfSafety, OfASlopeWhoseCrestOpens) {
     ASSERT_TRUE(found.lost) << mesh;
     EXPECT_LE(found.least, exact * (1 + rounding)) << mesh;
     EXPECT_GE(*found.lost, exact * (1 - 1e-3)) << mesh;
-    EXPECT_THAT(found.states, testing::Contains(testing::StartsWith("slip: 1 of 1 fractures"))) << mesh;
+    EXPECT_THAT(found.states, testing::Contains(testing::StartsWith("slip on 1 of 1 fractures"))) << mesh;
   }
 }
 
