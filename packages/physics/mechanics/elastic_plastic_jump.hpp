@@ -52,11 +52,11 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 /// - with these "runaway slip" [face, 1]: largest unstable slip of a step so far, see laws/runaway.hpp.
 ///
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
-/// (15), contact state (0 open, 1 stick, 2 slip), slip tendency |lambda_t|/b. The quantities of laws are 0 on joints
-/// without these laws.
+/// (15), contact state (0 open, 1 stick, 2 slip), mobilised strength |lambda_t|/b. The quantities of laws are 0 on
+/// joints without these laws.
 ///
 /// Outputs of fractures:
-/// - slip tendency |lambda_t|/-lambda_n of the mean traction;
+/// - slip tendency |lambda_t|/(-lambda_n) of the mean traction;
 /// - moment M0 = integral of G |p - p_0|, N m (2D: per depth, N), with the mean G of both sides;
 /// - in 3D the moment magnitude 2/3 (log10(M0/(N m)) - 9.1).
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(const mesh::Mesh& mesh,

@@ -41,7 +41,7 @@ JumpOfFace<dim>::JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::Jo
   aperture = std::max(joint.least_aperture, joint.initial_aperture + point.w[0]);
   at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, kept);
   const Real bound = joint.law.bound(at);
-  if (!at.open && at.shear > 0) slip_tendency = at.shear / std::max(bound, at.shear * 1e-16);
+  if (!at.open && at.shear > 0) mobilised = at.shear / std::max(bound, at.shear * 1e-16);
 }
 
 template <int dim>
@@ -82,7 +82,7 @@ void declare_jump_outputs(const ElasticPlasticJumpParameters& parameters, const 
   number("aperture", "m", {}, [](const Jump& jump) { return jump.aperture; });
   number("state", "-", {Summary::fractions, "", "", {std::begin(contact::state_names), std::end(contact::state_names)}},
          [](const Jump& jump) { return static_cast<Real>(jump.state); });
-  number("slip tendency", "-", {}, [](const Jump& jump) { return jump.slip_tendency; });
+  number("mobilised strength", "-", {}, [](const Jump& jump) { return jump.mobilised; });
   std::vector<assembly::Derived> magnitude;
   if (dim == 3) magnitude = {{"moment_magnitude", "-", moment_magnitude}};
   number("moment density", "N/m", {Summary::integral, "moment", "", {}, dim == 3 ? "N*m" : "N", magnitude},

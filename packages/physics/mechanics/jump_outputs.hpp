@@ -15,7 +15,7 @@ struct JumpOfFace {
   const mesh::Mesh::FractureFace& face;
   const laws::JointPoint<dim>& point;
   laws::ContactState state;
-  Real elastic[dim], plastic[dim], slip, slip_since_start, aperture, slip_tendency = 0;
+  Real elastic[dim], plastic[dim], slip, slip_since_start, aperture, mobilised = 0;
   laws::Contact<Real> at;
   int number = 0;          ///< of the joint in ElasticPlasticJumpParameters
   Real shear_modulus = 0;  ///< mean of both sides, Pa

@@ -79,7 +79,7 @@ TEST(KindsOfJoints, StrengthIsThatOfTheFace) {
       const auto& face = mesh.fracture_faces[f];
       const bool rough = mesh.fracture_names[face.fracture] == "rough";
       const Real bound = rough ? rough_bound(2e6, 8 + 2 * face.centre[0]) : 0.8 * 2e6;
-      EXPECT_NEAR(out.scalar("slip tendency", f), 1e-4 / C / bound, 1e-8);
+      EXPECT_NEAR(out.scalar("mobilised strength", f), 1e-4 / C / bound, 1e-8);
       EXPECT_EQ(out.scalar("state", f), 1);
     }
   }
