@@ -48,13 +48,14 @@ def fingerprint(text, files):
     return digest.hexdigest()
 
 
-def is_made(mesh, report, print_of_input):
-    """Returns whether a complete mesh of the same input exists."""
+def known_report(mesh, report, print_of_input):
+    """Returns the report of a complete mesh of the same input, or None."""
     try:
         known = json.loads(report.read_text())
-        return known["input"] == print_of_input and known["mesh"] == hashlib.sha256(mesh.read_bytes()).hexdigest()
+        same = known["input"] == print_of_input and known["mesh"] == hashlib.sha256(mesh.read_bytes()).hexdigest()
+        return known if same else None
     except (OSError, ValueError, KeyError, TypeError):
-        return False
+        return None
 
 
 def made(network):
@@ -95,14 +96,17 @@ def made_of(text, network):
 
 
 def make(options):
+    """Makes the mesh if it does not exist. Returns the text of its report, or None if it exists, and warnings."""
     from description import Network
     text = description(options)
     with doing("reading and generating fractures"):
         network = Network(text)
     report_file = options.output.with_suffix(options.output.suffix + ".json")
     print_of_input = fingerprint(text, network.files)
-    if is_made(options.output, report_file, print_of_input) and not options.picture:
-        return None
+    known = known_report(options.output, report_file, print_of_input)
+    if known and not options.picture:
+        return None, known["warnings"]
+    import checks
     import msh_file
     import report
     plan, sizes, mesh = made_of(text, network)
@@ -111,7 +115,8 @@ def make(options):
     unfinished = options.output.with_name(f"{options.output.name}.{os.getpid()}")
     try:
         msh_file.write(unfinished, mesh.points, groups, msh_file.singles_of(plan))
-        content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(), **report.of_mesh(mesh, plan, sizes)}
+        content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(),
+                   "warnings": checks.near_fractures(plan), **report.of_mesh(mesh, plan, sizes)}
         unfinished.replace(options.output)
     finally:
         unfinished.unlink(missing_ok=True)
@@ -119,7 +124,7 @@ def make(options):
     if options.picture:
         import picture
         picture.draw(mesh, plan, options.picture)
-    return report.as_text(content)
+    return report.as_text(content), content["warnings"]
 
 
 def end_results(path, reason):
@@ -140,7 +145,7 @@ def in_words(error, scene):
 def main(words=None):
     options = arguments(words)
     try:
-        told = make(options)
+        told, warnings = make(options)
     except Exception as error:  # includes exceptions of shapely and gmsh
         if isinstance(error, OSError):
             error = NetworkError(f"{error.filename or options.output}: {error.strerror or error}")
@@ -151,6 +156,8 @@ def main(words=None):
         if options.run:
             end_results(options.output.parent / "results.json", reason)
         return 1
+    for line in warnings:
+        print(f"warning: {options.scene}: {line}", file=sys.stderr)
     if not options.quiet:
         print(f"{options.output}: {told or 'is up to date'}")
     return 0

@@ -1,8 +1,11 @@
-"""Checks a network for distances and angles that are too small for a mesh. The errors name both fractures."""
+"""Checks a network for distances and angles that are too small for a mesh, or small. Messages name both fractures."""
 import numpy as np
 from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
 from shapes import Errors, at
+
+NEAR = 10  # in minimum distances: closer fractures that do not meet give a warning
+MOST_NEAR = 5  # warnings about such pairs
 
 
 def names(plan, one, other):
@@ -21,26 +24,35 @@ def both(pair):
     return f"{pair[0]} and {pair[1]}" if pair[0] != pair[1] else f"parts of {pair[0]}"
 
 
+def at_point(plan, where):
+    return at(where[:plan.dim], plan.network.domain.size)
+
+
 def too_close(plan, pair, gap, where):
     allowed, tolerance = plan.network.minimum_distance, plan.network.tolerance
     advice = f"move one, or join them by a larger \"tolerance\" (now {tolerance:.3g} m)" if gap > tolerance else "move one"
-    place = at(where[:plan.dim], plan.network.domain.size)
-    return (f"{both(pair)} are {gap:.3g} m apart at {place} without meeting; "
+    return (f"{both(pair)} are {gap:.3g} m apart at {at_point(plan, where)} without meeting; "
             f"the \"minimum distance\" is {allowed:.3g} m; {advice}")
 
 
-def close_edges(plan):
-    """Yields errors (names, message) of close edges without a common point, and of close end points of one edge."""
-    reach, segments, ends = plan.network.minimum_distance, plan.graph.segments(), np.array(list(plan.edges))
-    owners = list(plan.edges.values())
+def edges_within(plan, reach):
+    """Yields (owners of the one, of the other, distance, point) of close edges without a common point."""
+    segments, ends, owners = plan.graph.segments(), np.array(list(plan.edges)), list(plan.edges.values())
     i, j = near_pairs(segments.min(axis=1), segments.max(axis=1), reach)
     apart = ~(ends[i][:, :, None] == ends[j][:, None, :]).any(axis=(1, 2))
     i, j = i[apart], j[apart]
     s, _, gap = closest(segments[i], segments[j])
     for k in np.flatnonzero(gap < reach):
-        pair = names(plan, owners[i[k]], owners[j[k]])
+        yield owners[i[k]], owners[j[k]], gap[k], segments[i[k], 0] + s[k] * (segments[i[k], 1] - segments[i[k], 0])
+
+
+def close_edges(plan):
+    """Yields errors (names, message) of close edges without a common point, and of close end points of one edge."""
+    reach, segments, ends = plan.network.minimum_distance, plan.graph.segments(), np.array(list(plan.edges))
+    for one, other, gap, where in edges_within(plan, reach):
+        pair = names(plan, one, other)
         if pair:
-            yield pair, too_close(plan, pair, gap[k], segments[i[k], 0] + s[k] * (segments[i[k], 1] - segments[i[k], 0]))
+            yield pair, too_close(plan, pair, gap, where)
     at, length = plan.graph.parents_at(), np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     for k in np.flatnonzero(length < reach):
         a, b = ends[k]
@@ -49,10 +61,9 @@ def close_edges(plan):
             yield pair, too_close(plan, pair, length[k], segments[k, 0])
 
 
-def close_surfaces(plan):
-    """Yields errors (names, message) of points close to a surface that they do not belong to."""
-    at = plan.graph.parents_at()
-    reach, points = plan.network.minimum_distance, plan.points
+def points_within(plan, reach):
+    """Yields (surface, owners, distance, point) of points close to a surface that they do not belong to, in 3D."""
+    at, points = plan.graph.parents_at(), plan.points
     for k, surface in enumerate(plan.surfaces):
         near = np.flatnonzero(np.all((points > surface.low - reach) & (points < surface.high + reach), axis=1))
         height = abs(surface.plane.height(points[near]))
@@ -62,9 +73,32 @@ def close_surfaces(plan):
         for hole in surface.shape.interiors:
             over &= ~in_polygon(flat, np.array(hole.coords[:-1]))
         for p in near[over]:
-            pair = None if k in at[p] | plan.loose.get(int(p), set()) else names(plan, [k], at[p])
-            if pair:
-                yield pair, too_close(plan, pair, abs(surface.plane.height(points[p])), points[p])
+            if k not in at[p] | plan.loose.get(int(p), set()):
+                yield {k}, at[p], abs(surface.plane.height(points[p])), points[p]
+
+
+def close_surfaces(plan):
+    """Yields errors (names, message) of points close to a surface that they do not belong to."""
+    for one, other, gap, where in points_within(plan, plan.network.minimum_distance):
+        pair = names(plan, one, other)
+        if pair:
+            yield pair, too_close(plan, pair, gap, where)
+
+
+def near_fractures(plan):
+    """Returns warnings about fractures that come close without meeting there, the nearest first.
+
+    Random fractures do so by chance, without a warning."""
+    reach, at, first = NEAR * plan.network.minimum_distance, plan.graph.parents_at(), {}
+    found = list(edges_within(plan, reach)) + (list(points_within(plan, reach)) if plan.dim == 3 else [])
+    for one, other, gap, where in sorted(found, key=lambda near: near[2]):
+        pair, near = names(plan, one, other), np.flatnonzero(np.linalg.norm(plan.points - where, axis=1) < 2 * reach)
+        meet = any(at[p] & set(one) and at[p] & set(other) for p in near)
+        if pair and not meet and not set(pair) <= set(plan.network.at_random):
+            first.setdefault(frozenset(pair), f"{both(pair)} are {gap:.3g} m apart at {at_point(plan, where)} without meeting; "
+                             "if they should meet, join them by a larger \"tolerance\"")
+    lines = list(first.values())
+    return lines[:MOST_NEAR] + ([f"{len(lines) - MOST_NEAR} more pairs of fractures are close"] if len(lines) > MOST_NEAR else [])
 
 
 def folds(plan):

@@ -104,7 +104,7 @@ class Network:
             kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else None)
             if kind is None:
                 kind = "points" if of_domain and has_points(path, dim) else of_domain
-            table = read_fab(path) if kind == "fab" else read_table(path, kind, dim)
+            table = read_fab(path) if kind == "fab" else read_table(path, kind, dim, self.entries.get("entries of joints", ()))
         for row in table.fractures:
             row.points = row.points * content.get("unit", 1.0)
         if table.box is not None:

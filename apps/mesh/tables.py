@@ -1,5 +1,6 @@
 """Tables of fractures: CSV files of points, lines, polygons and ellipses."""
 import csv
+import difflib
 import math
 import os
 import re
@@ -144,7 +145,7 @@ class TitledColumns(Columns):
 
     A title may contain a unit, such as `initial aperture [mm]`."""
 
-    def __init__(self, kind, words, path, line, dim=2):
+    def __init__(self, kind, words, path, line, dim=2, entries=()):
         super().__init__(kind, dim)
         self.path, self.line = path, line
         parted = [parted_title(word) for word in words]
@@ -152,7 +153,7 @@ class TitledColumns(Columns):
             parted = [(re.sub(r"(?i)^(?:pt|point)_(?=[xyz]$)", "", title), unit) for title, unit in parted]
         self.titles, units = [title.lower() for title, _ in parted], [unit for _, unit in parted]
         self.refuse_doubled()
-        self.count = len(words)
+        self.count, self.read = len(words), ",".join(words)
         if kind == "polygons" and self.titles[-1:] == [GOES_ON]:
             self.count = None
             self.titles.pop()
@@ -167,9 +168,17 @@ class TitledColumns(Columns):
             self.named = [one for one in self.named if one[1].lower() != "z"]
             if self.number is None:
                 self.refuse(f"the titles of points lack one of {', '.join(NUMBER)}: points with the same number form a line")
+        self.refuse_misspelt(entries)
 
     def refuse(self, why):
         raise NetworkError(f"{self.path}: line {self.line}: {why}", [self.path])
+
+    def refuse_misspelt(self, entries):
+        """Rejects titles close to the name of an entry of a joint. Other titles are ignored, with a warning of the program."""
+        for k, title, _ in self.named:
+            meant = difflib.get_close_matches(title, entries, 1, 0.85)
+            if meant and title not in entries:
+                self.refuse(f"column {k + 1} has the title \"{title}\", which is no entry of a joint; did you mean \"{meant[0]}\"?")
 
     def refuse_doubled(self):
         for k, title in enumerate(self.titles):
@@ -193,7 +202,8 @@ class TitledColumns(Columns):
                           if kind != "points" and set(titles) <= set(self.titles)), "")
             self.refuse(f"the titles of {self.kind} lack {listed}{meant}; columns may have any order if titles name "
                         f"all of them; without titles they are {','.join(order)}"
-                        f"{',...' if self.kind == 'polygons' else ''}")
+                        f"{',...' if self.kind == 'polygons' else ''}; further columns may be name, material and entries of a "
+                        f"joint; read: {self.read}")
         return needed
 
     def check_unit(self, title, unit):
@@ -300,15 +310,16 @@ def rows_of(path):
         yield k, words
 
 
-def read_csv(path, kind, dim=2):
+def read_csv(path, kind, dim=2, entries=()):
     """Returns the table of a CSV file. A first line without numbers contains the titles of the columns.
 
-    Rows of points with the same number form one fracture. Points have `dim` coordinates."""
+    Rows of points with the same number form one fracture. Points have `dim` coordinates. `entries` are names of entries
+    of joints, for misspelt titles."""
     table, known = Table(), None
     for k, words in rows_of(path):
         place = f"{path}: line {k}"
         if known is None and are_titles(words):
-            known = TitledColumns(kind, words, path, k, dim)
+            known = TitledColumns(kind, words, path, k, dim, entries)
             continue
         known = known or Columns(kind, dim)
         while len(words) > 1 and not words[-1].strip():  # trailing commas
@@ -360,8 +371,8 @@ def complete(table, path):
     return table
 
 
-def read_table(path, kind, dim=2):
-    """Returns the fractures in a file.
+def read_table(path, kind, dim=2, entries=()):
+    """Returns the fractures in a file. `entries` as for read_csv().
 
     All errors are raised together. With kind = None the columns determine the kind."""
-    return complete(read_csv(path, kind or kind_of(path), dim), path)
+    return complete(read_csv(path, kind or kind_of(path), dim, entries), path)

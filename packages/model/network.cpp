@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "base/xml.hpp"
+#include "physics/scene.hpp"
 
 #include <filesystem>
 
@@ -130,7 +131,11 @@ std::string network_description(const Comm& comm, const std::string& path, const
   auto network =
       base::read<Network>(list.sublist("Mesh file").sublist("network"), path, "Sprekk > Mesh file > network", errors);
   network.resolve_files(std::filesystem::path(path).parent_path().string());
-  return base::to_xml(base::effective(network, "network"));
+  list = base::effective(network, "network");
+  Teuchos::Array<std::string> entries;
+  for (const auto& entry : base::specification<physics::Material>("").entries) entries.push_back(entry.name);
+  list.set("entries of joints", entries);
+  return base::to_xml(list);
 }
 
 }  // namespace sprekk::model

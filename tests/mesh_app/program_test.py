@@ -320,6 +320,7 @@ class Files(MeshTest):
     def test_bad_titles(self):
         for titles, why in (
             ("START_X,START_Y,x1,y1,id", 'the titles of lines lack "x0", "y0"; columns may have any order'),
+            ("x0,y,x1,y1,id", 'the titles of lines lack "y0"; columns may have any order if titles name all of them; without titles they are id,x0,y0,x1,y1; further columns may be name, material and entries of a joint; read: x0,y,x1,y1,id'),
             ("x0,y0,x1,y1,X0", 'columns 1 and 5 have the same title, "x0"'),
             ("x0,y0,x1,y1,name,name", 'columns 5 and 6 have the same title, "name"'),
             ("x0 [km],y0,x1,y1,id", 'the column "x0" is in km, expected m'),
@@ -432,6 +433,23 @@ class Runs(MeshTest):
         with open(self.folder / "net.msh", "r+b") as file:
             file.truncate(1000)
         self.assertIn("cells", self.mesh(scene, "--set", "Mesh file.network.growth=0.6"))
+
+    def test_misspelt_entry_of_a_joint(self):
+        net = self.write("net.csv", "id,x0,y0,x1,y1,remark,friction coeficient", "1,0.2,0.5,0.8,0.5,a,0.5")
+        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}), expect=1)
+        self.assertEqual(told, f'sprekk: {net}: line 1: column 7 has the title "friction coeficient", which is no entry of a joint; '
+                               'did you mean "friction coefficient"?\n')
+
+    def test_near_fractures(self):
+        """Ends close to another fracture give a warning, also with an existing mesh. Traces that meet give none."""
+        self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.5,0.501,0.5,0.8", "3,0.3,0.2,0.3,0.8", "4,0.6,0.5,0.6,0.8")
+        scene = self.scene(fractures={"set": {"file": "net.csv"}}, relative_size=0.2)
+        for _ in range(2):
+            err = io.StringIO()
+            with contextlib.redirect_stderr(err):
+                self.assertEqual(app.main([str(scene), "-o", str(self.folder / "net.msh"), "--program", str(program.PROGRAM), "--quiet"]), 0)
+            self.assertRegex(err.getvalue(), r"^warning: .*scene.xml: fracture 1 \(.*net.csv: line 1\) and fracture 2 \(.*net.csv: line 2\) "
+                                             r'are 0.001 m apart at \(0.5, 0.5\d*\) without meeting; if they should meet, .* "tolerance"\n$')
 
     def test_what_takes_long_is_told(self):
         from progress import doing
