@@ -19,6 +19,9 @@ using mesh::operator*;
 
 namespace {
 
+/// Distance of a point on a fracture from the plane of its face, relative to the domain size.
+constexpr Real on_fracture = 1e-8;
+
 /// Straight part of a well. In 2D a point with the length 1, perpendicular to the plane.
 struct Segment {
   int well;
@@ -227,7 +230,8 @@ class Finder {
     const Vector away = segment.from - face.centre;
     const auto& well = parameters_.wells[segment.well];
     if constexpr (dim == 2) {
-      if (std::abs(mesh::dot(away, normal)) > 1e-8 * size_ || std::abs(mesh::dot(away, face.frame[1])) > face.area / 2)
+      if (std::abs(mesh::dot(away, normal)) > on_fracture * size_ ||
+          std::abs(mesh::dot(away, face.frame[1])) > face.area / 2)
         return false;
       connect_face(f, segment, 2 / ((1 + well.skin) * well.radius));
       return true;
@@ -235,7 +239,7 @@ class Finder {
       const Real towards = mesh::dot(segment.along, normal), height = mesh::dot(away, normal);
       const Real ahead = -mesh::dot(away, segment.along), wide = std::sqrt(face.area);
       if (std::abs(towards) < 1e-6) {
-        if (std::abs(height) < 1e-8 * size_ && ahead > -wide && ahead < segment.length + wide &&
+        if (std::abs(height) < on_fracture * size_ && ahead > -wide && ahead < segment.length + wide &&
             mesh::norm(away + ahead * segment.along) < wide)
           failure = fmt::format(
               "Sprekk > Flow > Wells > {} > \"points\": a part lies in the fracture \"{}\"; a well may "
@@ -329,6 +333,27 @@ class Finder {
 
 WellConnections find_well_connections(const mesh::Mesh& mesh, const WellsParameters& parameters) {
   return mesh::for_corners(mesh.shape, [&](auto shape) { return Finder<shape()>(mesh, parameters).find(); });
+}
+
+std::vector<WellNearFracture> wells_near_fractures(const mesh::Mesh& mesh, const std::vector<Well>& wells) {
+  std::vector<WellNearFracture> near;
+  if (mesh.dim() == 3 || mesh.single_fractures.empty()) return near;
+  const Real size = mesh::largest_extent(mesh);
+  for (std::size_t w = 0; w < wells.size(); ++w) {
+    std::vector<Real> distances(mesh.single_fractures.size(), size);  // [single fracture] if less than half a face
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      const auto& face = mesh.fracture_faces[f];
+      const Vector away = wells[w].points[0] - face.centre;
+      const Real beyond = std::max(std::abs(mesh::dot(away, face.frame[1])) - face.area / 2, Real(0));
+      const Real distance = std::hypot(mesh::dot(away, face.frame[0]), beyond);
+      if (distance < face.area / 2) distances[face.single] = std::min(distances[face.single], distance);
+    }
+    distances = base::min_over_ranks(*mesh.comm, distances);
+    const auto nearest = std::min_element(distances.begin(), distances.end());
+    if (*nearest > on_fracture * size && *nearest < size)
+      near.push_back({static_cast<int>(w), static_cast<int>(nearest - distances.begin()), *nearest});
+  }
+  return near;
 }
 
 }  // namespace sprekk::transport

@@ -27,4 +27,11 @@ struct WellConnections {
 /// Finds the connections. Collective.
 WellConnections find_well_connections(const mesh::Mesh& mesh, const WellsParameters& parameters);
 
+/// Well in 2D at a distance of less than half a fracture face from a fracture, but not on a fracture.
+struct WellNearFracture {
+  int well, single;  ///< single: the nearest fracture
+  Real distance;     ///< m
+};
+std::vector<WellNearFracture> wells_near_fractures(const mesh::Mesh& mesh, const std::vector<Well>& wells);
+
 }  // namespace sprekk::transport

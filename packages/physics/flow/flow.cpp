@@ -17,7 +17,7 @@
 #include "transport/fracture_flow.hpp"
 #include "transport/hybrid_diffusion.hpp"
 #include "transport/storage.hpp"
-#include "transport/wells.hpp"
+#include "transport/well_connections.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -361,6 +361,18 @@ void add_closure_warnings(const Setting& setting, std::vector<std::string>& warn
   }
 }
 
+/// Warns about wells beside a fracture in 2D, where rounded coordinates may be the cause.
+void add_well_warnings(const Setting& setting, std::vector<std::string>& warnings) {
+  const auto& [scene, mesh, start] = setting;
+  const auto wells = wells_in(scene, mesh.dim());
+  for (const auto& [w, single, distance] : transport::wells_near_fractures(mesh, wells))
+    warnings.push_back(implausible(
+        fmt::format("{}: Sprekk > Flow > Wells > {} > \"points\"", scene.origin, wells[w].name),
+        fmt::format("({:.10g}, {:.10g}) is {:.3g} m beside the fracture \"{}\", less than half of a face",
+                    wells[w].points[0][0], wells[w].points[0][1], distance, mesh.single_fractures[single].name),
+        "the well is connected to the rock only", "if it should be on the fracture, give a point of the fracture"));
+}
+
 }  // namespace
 
 std::vector<std::string> Flow::warnings(const Setting& setting) {
@@ -370,6 +382,7 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
   if (const auto skew = transport::scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh)); !skew.empty())
     all.push_back(scene.origin + ": " + skew);
   add_closure_warnings(setting, all);
+  add_well_warnings(setting, all);
   return all;
 }
 
