@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set(home lib/sprekk)
 install(TARGETS sprekk_app DESTINATION ${home}/apps/sprekk COMPONENT program)
 install(PROGRAMS sprekk DESTINATION ${home} COMPONENT program)
-install(DIRECTORY apps/export apps/fit apps/mesh apps/plot apps/report DESTINATION ${home}/apps COMPONENT program
+install(DIRECTORY apps/export apps/fit apps/mesh apps/network apps/plot apps/report DESTINATION ${home}/apps COMPONENT program
   FILES_MATCHING PATTERN "*.py" PATTERN "*.css" PATTERN __pycache__ EXCLUDE)
 install(FILES docs/use/reference.md DESTINATION ${home}/docs/use COMPONENT program)
 install(DIRECTORY xml/ DESTINATION ${home}/xml COMPONENT program)

@@ -84,7 +84,7 @@ if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; 
 fi
 if [[ ${{words[0]}} == new ]]; then exec {root}/sprekk "${{words[@]}}"; fi
 if [[ ${{words[0]}} =~ ^(plot|report|export)$ ]]; then exec {python} -B {root}/apps/${{words[0]}} "${{words[@]:1}}"; fi
-if [[ ${{words[0]}} == fit ]]; then exec {python} -B {root}/apps/fit --program {binary} "${{words[@]:1}}" "${{sets[@]}}"; fi
+if [[ ${{words[0]}} =~ ^(network|fit)$ ]]; then exec {python} -B {root}/apps/${{words[0]}} --program {binary} "${{words[@]:1}}" "${{sets[@]}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
 """
 REPEATED = re.compile(r"\./sprekk (run xml/\S+|plot output/\S+ --dpi \d+)")
@@ -119,7 +119,7 @@ def commands(block):
 
 def missing_program(command):
     """Returns the missing program or modules of a command, or None."""
-    needs = {"plot": "matplotlib, numpy, vtkmodules", "mesh": "gmsh, matplotlib, numpy, shapely",
+    needs = {"plot": "matplotlib, numpy, vtkmodules", "mesh": "gmsh, matplotlib, numpy, shapely", "network": "numpy, shapely",
              "fit": "matplotlib, numpy, scipy"}
     words = command.split()
     if words[0] in PROGRAM and words[1] in needs:

@@ -116,6 +116,7 @@ class Packages(unittest.TestCase):
         self.user("sprekk mesh-info outcrop.msh --fractures traces,fault")
         self.user(f"sprekk run {XML}/networks/outcrop_2d.xml --output outcrop")
         self.user("sprekk export outcrop -o outcrop.geojson")
+        self.user(f"sprekk network {XML}/networks/statistics_2d.toml -o drawn && sprekk check drawn.xml")
         for scene in sorted((ROOT / "xml/new").glob("*.xml")):
             self.user(f"sprekk new {scene.stem} {scene.name} && test -s {scene.name}")
         for command in ("test", "build", "perf contact", "fuzz", "package", "docs"):
