@@ -13,9 +13,12 @@ folder. A directory gives these pictures, if the run contains the data:
   error.png        estimated error of one step
   loops.png        mean traction against mean jump of each fracture
   series.png       slip, opening, pressures and injected volume over time
+  events.png       magnitudes of slip events over time and injection rate
   magnitudes.png   moment magnitudes of many slipping fractures, in 3D
   probe_NAME.png   each probe
-  convergence.png  iterations and residuals of all steps"""
+  convergence.png  iterations and residuals of all steps
+
+and, for fractures, the tables events.csv, fractures_long.csv and fractures_wide.csv."""
 import argparse
 import io
 import sys
@@ -33,7 +36,7 @@ def arguments(words):
     parser.add_argument("--time", type=float, metavar="T", help="draw the step written nearest to T (default: the last)")
     parser.add_argument("--warp", type=float, metavar="FACTOR", help="factor on the displacement (default: a visible one)")
     parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: 150)")
-    parser.add_argument("--whole", action="store_true", help="show the whole body in 3D, without a cut")
+    parser.add_argument("--whole", action="store_true", help="show the whole body: no cut, no zoom")
     parser.add_argument("--paraview", action="store_true",
                         help="write paraview.py instead, which ParaView opens with File > Load State")
     return parser.parse_args(words)
@@ -56,6 +59,7 @@ def of_run(directory, options):
     import bulk
     import convergence
     import error
+    import events
     import flow
     import fractures
     import loops
@@ -80,7 +84,7 @@ def of_run(directory, options):
         time, file = min(bulk_steps, key=lambda step: abs(step[0] - wanted))
         title = f"{name}, {when(time, clock)}"
         rock, joints = read.grid(file), None
-        for file in [file for t, file in fracture_steps if t == time]:
+        for file in [file for t, file in fracture_steps if t == time and names]:
             joints = read.grid(file)
         if joints is None and any(step["time"] == time and step["fractures"] for step in states):
             raise PlotError(f"{directory / 'fractures.pvd'}: has no step at t = {time:g} s, bulk.pvd has one; "
@@ -98,26 +102,32 @@ def of_run(directory, options):
         if deforms and joints and joints.GetNumberOfCells() > 0:
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
             singles = content.get("single_fractures", [])
-            yield "fractures", fractures.of_step(rock, joints, names, title, singles)
-            yield "maps", maps.of_step(rock, joints, names, title, singles)
+            yield "fractures", fractures.of_step(rock, joints, names, title, singles, options.whole)
+            yield "maps", maps.of_step(rock, joints, names, title, singles, options.whole)
             yield "mohr", mohr.of_step(rock, joints, scene, title, content, time)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
     else:
         why = "no step of the run was completed" if not states else 'it contains no bulk.pvd; the scene\'s Output has "vtu" false, or it was removed'
         left_out("bulk.png or other picture of one step", directory, why)
-    names = [name for name in names if "mean_jump" in states[-1]["fractures"][name]]
-    if names and len(states) > 1:
-        yield "loops", loops.of_fractures(states, names, name, *sizes, unloaded=loops.starts_unloaded(scene))
-    elif names:
-        left_out("loops.png", directory, "it contains one step, a loop requires two")
-    start = float(scene.get("Time", {}).get("start", 0))
+    singles = [one["name"] for one in content.get("single_fractures", [])]
+    if states and "mean_jump_local" in states[-1].get("single_fractures", {}):
+        if len(states) > 1:
+            yield "loops", loops.of_fractures(states, singles, name, *sizes, unloaded=loops.starts_unloaded(scene))
+        else:
+            left_out("loops.png", directory, "it contains one step, a loop requires two")
+    start = start_of(scene)
     dim = content.get("mesh", {}).get("dimension", 3)
-    made = [("series", series.of_run(states, name, clock, start, dim)),
+    made = [("series", series.of_run(states, singles, name, clock, start, dim)),
+            ("events", magnitudes.over_time(events.of_run(content, start), steps, name, clock, start, dim)),
             ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
     made += [(f"probe_{path.stem}", series.of_probe(path)) for path in sorted((directory / "probes").glob("*.csv"))]
     yield from ((picture, figure) for picture, figure in made if figure)
     yield "convergence", convergence.of_run(steps, name)
+
+
+def start_of(scene):
+    return float(scene.get("Time", {}).get("start", 0))
 
 
 def left_out(pictures, directory, why):
@@ -141,13 +151,17 @@ def plot(path, options):
 
 
 def pictures(path, options):
-    """Returns {file name: bytes} of all pictures. They are written together, so that an error leaves no files."""
+    """Returns {file name: bytes} of all pictures and tables, to be written together: an error leaves no files."""
     from style import save
     made = {}
     for name, figure in of_run(path, options) if path.is_dir() else of_csv(path):
         picture = io.BytesIO()
         save(figure, picture, options.dpi)
         made[f"{name}.png"] = picture.getvalue()
+    if path.is_dir():
+        import events
+        tables = events.tables(read.results(path), start_of(read.scene(path)))
+        made |= {name: table.encode() for name, table in tables.items()}
     return made
 
 

@@ -1,9 +1,9 @@
 """Pictures of the rock: displacement, von Mises stress and largest compression on the deformed body."""
 import numpy as np
 import read
+import space
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import to_rgba
-from style import FAINT, INK, PAPER, Quantity, colour_bar, draw_polygons_3d, limits, nice, panels_of_plane, plt, without_noise
+from style import FAINT, INK, PAPER, Quantity, colour_bar, limits, nice, panels_of_plane, plt, without_noise
 
 LESS_PRESSURE = ", less α (p − p₀)"  # definition of the array `stress` with a fluid in the rock
 
@@ -88,40 +88,42 @@ def of_plane(grid, fractures, title, factor=None):
     return figure
 
 
-def fracture_faces(grid, fractures, factor):
-    """Returns the corners of the fracture faces, moved by the mean displacement of the rock at each corner."""
+def moved_points(grid, points, factor):
+    """Returns points of fractures, moved by the mean displacement of the rock there."""
     from vtkmodules.vtkCommonCore import vtkIdList
     from vtkmodules.vtkCommonDataModel import vtkPointLocator
-    faces = read.surface(fractures)
     displacement = read.arrays(grid.GetPointData())["displacement"]
     locator, found = vtkPointLocator(), vtkIdList()
     locator.SetDataSet(grid)
     locator.BuildLocator()
-    moved = faces.points.copy()
+    moved = points.copy()
     for point in moved:
         locator.FindPointsWithinRadius(1e-9 * grid.GetLength(), point, found)
         sides = [found.GetId(k) for k in range(found.GetNumberOfIds())]
         point += factor * np.mean(displacement[sides], axis=0) if sides else 0
-    return faces.corners(moved)
+    return moved
 
 
 def of_body(grid, fractures, title, factor=None, whole=False):
-    surface = read.surface(grid if whole else read.behind(grid))
+    surface = space.outer(read.surface(grid if whole else read.behind(grid)))
     displacement = surface.point_data["displacement"]
     factor = warp_factor(surface.points, displacement, factor)
-    corners = surface.corners(surface.points + factor * displacement)
-    joints = fracture_faces(grid, fractures, factor) if fractures and not whole else []
-    paper = np.tile(to_rgba(PAPER), (len(joints), 1))
-    figure, axes = plt.subplots(1, 3, figsize=(10, 3.9), subplot_kw={"projection": "3d"})
+    points = surface.points + factor * displacement
+    parts = [space.edges(surface, points)]
+    if fractures and not whole:
+        joints = read.surface(fractures)
+        corners = moved_points(grid, joints.points, factor)
+        parts += [space.Part(corners, joints.polygons, PAPER), space.Part(corners, list(rim(joints, None)), INK)]
+    everywhere = read.surface(grid)
+    bounds = space.bounds_of(everywhere.points + factor * everywhere.point_data["displacement"])
+    figure, axes = plt.subplots(1, 3, figsize=(10, 4.2))
     half = "" if whole else ", front half of the rock cut away"
     figure.suptitle(f"{title}, deformation × {factor:g}{half}", fontsize=10)
     for ax, (values, colours, label, on_points) in zip(axes, panels(surface)):
         faces = np.array([np.mean(values[p]) for p in surface.polygons]) if on_points else values
         norm = limits(faces, clip=not on_points)
-        colour = colours(norm(faces))
-        edges = np.concatenate([colour * (0.85, 0.85, 0.85, 1), np.tile(to_rgba(INK), (len(joints), 1))])
-        draw_polygons_3d(ax, corners + joints, np.concatenate([colour, paper]), edges, zoom=0.98)
-        colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.1)
+        space.draw(ax, [space.Part(points, surface.polygons, colours(norm(faces))), *parts], bounds)
+        colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.02)
     return figure
 
 

@@ -1,10 +1,11 @@
 """Picture of the estimated error: of stress or flow in the rock, and of the jump on fractures."""
 import numpy as np
 import read
+import space
 from bulk import rim
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm
-from style import FAINT, INK, Quantity, colour_bar, draw_polygons_3d, limits, plt
+from style import FAINT, INK, Quantity, colour_bar, limits, plt
 
 DECADES = 4  # range of colours of the density
 
@@ -65,19 +66,18 @@ def of_plane(grid, joints, fractures):
 
 
 def of_body(grid, joints, whole):
-    surface = read.surface(grid if whole else read.behind(grid))
-    figure, axes = plt.subplots(1, 2 if joints else 1, squeeze=False, figsize=(8.5 if joints else 4.5, 4.4),
-                                subplot_kw={"projection": "3d"})
+    surface = space.outer(read.surface(grid if whole else read.behind(grid)))
+    figure, axes = plt.subplots(1, 2 if joints else 1, squeeze=False, figsize=(8.5 if joints else 4.5, 5))
     density, density_label = density_of(surface)
     density, norm, colours = density_colours(density)
     pictures = [(surface, density, norm, colours, density_label)]
+    edges, bounds = space.edges(surface), np.reshape(grid.GetBounds(), (3, 2)).T
     if joints:
         faces = read.surface(joints)
         pictures.append((faces, *jump_colours(faces)))
     for ax, (polygons, values, norm, colours, label) in zip(axes.flat, pictures):
-        colour = colours(norm(values))
-        draw_polygons_3d(ax, polygons.corners(), colour, colour * (0.85, 0.85, 0.85, 1), zoom=0.98)
-        bar = colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.1)
+        space.draw(ax, [space.Part(polygons.points, polygons.polygons, colours(norm(values))), edges], bounds)
+        bar = colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.02)
         bar.locator = plt.LogLocator() if isinstance(norm, LogNorm) else bar.locator
     return figure
 

@@ -4,9 +4,10 @@ from collections import namedtuple
 
 import numpy as np
 import read
+import space
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm
-from style import INK, NOISE, Quantity, colour_bar, draw_polygons_3d, limits, panels_of_plane, plt, without_noise
+from style import INK, NOISE, Quantity, colour_bar, limits, panels_of_plane, plt, without_noise
 
 
 # Arrays of the potential and the flux in rock and fractures, with labels and the unit of the potential.
@@ -97,23 +98,24 @@ def of_plane(rock, joints, title, kind, initial):
     return figure
 
 
-def of_body(rock, joints, title, whole, kind, initial):
+def of_body(rock, joints, bounds, title, whole, kind, initial):
     content = list(panels(rock, joints, kind, initial))
-    figure, axes = plt.subplots(1, len(content), figsize=(4 * len(content) + 1, 4.8), subplot_kw={"projection": "3d"})
+    figure, axes = plt.subplots(1, len(content), figsize=(4 * len(content) + 1, 5.2))
     figure.suptitle(title + ("" if whole else ", front half of the rock cut away"), fontsize=10)
+    edges = space.edges(rock)
     for ax, (name, of_rock, of_fractures) in zip(axes, content):
         drawn = [(rock, of_rock)] + ([(joints, of_fractures)] if of_fractures and not whole else [])
-        corners = sum((list(surface.corners()) for surface, _ in drawn), [])
-        colours = np.concatenate([colour(norm(values)) for _, (values, norm, colour, _) in drawn])
-        draw_polygons_3d(ax, corners, colours, colours * (0.85, 0.85, 0.85, 1), zoom=0.98)
-        bars(figure, ax, of_rock, of_fractures, location="bottom", shrink=0.7, pad=0.1)
+        parts = [space.Part(surface.points, surface.polygons, colour(norm(values)))
+                 for surface, (values, norm, colour, _) in drawn]
+        space.draw(ax, [*parts, edges], bounds)
+        bars(figure, ax, of_rock, of_fractures, location="bottom", shrink=0.7, pad=0.02)
     return figure
 
 
 def of_step(grid, fractures, title, whole=False, kind=FLUID, initial=None):
     """Returns the figure of a grid of the rock. The grid of the fractures and the text `initial` may be None."""
-    flat = read.is_plane(grid)
-    rock = read.surface(grid if flat or whole else read.behind(grid))
-    if flat:
-        return of_plane(rock, read.segments(fractures) if fractures else None, title, kind, initial)
-    return of_body(rock, read.surface(fractures) if fractures else None, title, whole, kind, initial)
+    if read.is_plane(grid):
+        return of_plane(read.surface(grid), read.segments(fractures) if fractures else None, title, kind, initial)
+    rock = space.outer(read.surface(grid if whole else read.behind(grid)))
+    bounds = np.reshape(grid.GetBounds(), (3, 2)).T
+    return of_body(rock, read.surface(fractures) if fractures else None, bounds, title, whole, kind, initial)

@@ -1,7 +1,8 @@
 """Pictures of fractures: slip, opening, traction and contact state, along traces in 2D, on faces in 3D."""
 import numpy as np
 import read
-from style import (FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, colour_bar, draw_polygons_3d, foremost, limits, natural, plt,
+from network import Network
+from style import (FACE_COLOURS, FACE_STATES, FAINT, INK, LINES, Quantity, colour_bar, foremost, limits, natural, plt,
                    state_bar, without_noise)
 
 
@@ -52,12 +53,6 @@ def chains(segments):
     return found
 
 
-def part(surface, chosen):
-    """Returns the surface of the chosen faces."""
-    return read.Surface(surface.points, [surface.polygons[i] for i in chosen],
-                        {name: values[chosen] for name, values in surface.cell_data.items()}, {})
-
-
 def scales(rock, data):
     """Returns reference values for round-off: of displacements and jumps, m, and of stresses and tractions, Pa."""
     displacement, stress = (read.arrays(of)[name] for of, name in ((rock.GetPointData(), "displacement"), (rock.GetCellData(), "stress")))
@@ -81,6 +76,12 @@ def quantities(data, length, stress):
             "shear traction": (without_noise(np.linalg.norm(traction[:, 1:], axis=1), stress), "Pa")}
 
 
+def face_states(data, length):
+    """Returns the index of FACE_STATES of each face; slip below the round-off of the length does not count."""
+    state, slipped = data["state"].astype(int), without_noise(data["slip"], length) > 0
+    return np.select([state == 0, state == 2, slipped], [0, 3, 2], 1)
+
+
 ROWS = {"tangential jump": ("tangential jump", "slip"), "opening": ("opening",),
         "traction": ("normal traction", "shear traction")}  # in the 2D picture
 
@@ -94,7 +95,7 @@ class Trace:
 
 def chains_of(surface, chosen):
     """Returns (faces, arc length) of each chain among the chosen faces, in the order of x."""
-    found = [(chosen[chain], arc) for chain, arc in chains(part(surface, chosen))]
+    found = [(chosen[chain], arc) for chain, arc in chains(surface.part(chosen))]
     return sorted(found, key=lambda chain: tuple(np.min(surface.points[surface.polygons[chain[0][0]][:2]], axis=0)))
 
 
@@ -131,7 +132,8 @@ def draw_curves(ax, traces, row, drawn, quantity):
 def draw_states(ax, traces, state, first):
     """Draws a strip for each trace, from top to bottom, with labels in the first column."""
     for k, trace in enumerate(traces):
-        ax.pcolormesh(trace.arc, [k + 0.54, k + 1.46], state[trace.faces][None, :], cmap=STATE_COLOURS, vmin=-0.5, vmax=2.5)
+        strip = state[trace.faces][None, :]
+        ax.pcolormesh(trace.arc, [k + 0.54, k + 1.46], strip, cmap=FACE_COLOURS, vmin=-0.5, vmax=3.5)
     ax.set(xlabel="arc length (m)", ylim=(len(traces) + 0.5, 0.5))
     ax.yaxis.set_major_locator(plt.MaxNLocator(6, integer=True, min_n_ticks=1) if len(traces) > 1 else plt.NullLocator())
     named = 1 < len(traces) <= MOST_NAMES
@@ -191,38 +193,41 @@ def along(surface, names, title, length, stress, singles=()):
             ax.tick_params(labelbottom=False, labelleft=k % columns == 0)
             ax.set_ylabel(quantity.label if k % columns == 0 else "")
             ax.yaxis.set_label_coords(-0.5 / 3.6, 0.5)
-        draw_states(column[-1], traces[number], surface.cell_data["state"], k % columns == 0)
+        draw_states(column[-1], traces[number], face_states(surface.cell_data, length), k % columns == 0)
         if len(traces[number]) > 1:
             legend_of_traces(column[0], traces[number])
         for ax, row in zip(column, ROWS.values()):
             if k % columns == columns - 1 and len(row) > 1:
                 legend_of_lines(ax, row, max(map(len, traces.values())))
-    patches = [plt.Rectangle((0, 0), 1, 1, color=STATE_COLOURS(i)) for i in range(3)]
-    figure.legend(patches, STATES, loc="upper right", bbox_to_anchor=(1, 1), ncol=3, columnspacing=1, handlelength=1.2, borderaxespad=0)
+    patches = [plt.Rectangle((0, 0), 1, 1, color=FACE_COLOURS(i)) for i in range(len(FACE_STATES))]
+    figure.legend(patches, FACE_STATES, loc="upper right", bbox_to_anchor=(1, 1), ncol=4, columnspacing=1, handlelength=1.2,
+                  borderaxespad=0)
     return figure
 
 
-def on_faces(surface, title, length, stress):
-    """Returns the 3D figure with coloured faces."""
-    figure, axes = plt.subplots(2, 3, figsize=(9, 6.2), subplot_kw={"projection": "3d"})
+def on_faces(view, title, length, stress):
+    """Returns the 3D figure with coloured faces, and names in the panel of contact states."""
+    figure, axes = plt.subplots(2, 3, figsize=(10, 7.6))
     figure.suptitle(title, fontsize=10)
-    bar = {"location": "bottom", "shrink": 0.7, "pad": 0.12}
-    edges = [(0.5, 0.5, 0.5, 0.6)]
+    figure.supxlabel(view.note(), fontsize=8)
+    bar = {"location": "bottom", "shrink": 0.7, "pad": 0.02}
     colours = {"opening": "RdBu_r", "normal traction": "cividis", "shear traction": "cividis"}
-    for ax, (name, (values, base)) in zip(axes.flat, quantities(surface.cell_data, length, stress).items()):
-        prefix = effective(surface.cell_data) if name == "normal traction" else ""
-        quantity, palette = Quantity(prefix + name, base, values), plt.get_cmap(colours.get(name, "inferno"))
+    for ax, (name, (values, base)) in zip(axes.flat, quantities(view.data, length, stress).items()):
+        prefix = effective(view.data) if name == "normal traction" else ""
+        quantity, palette = Quantity(prefix + name, base, values), plt.get_cmap(colours.get(name, "YlOrRd"))
         norm = limits(quantity(values), signed=name == "opening", clip=True)
-        draw_polygons_3d(ax, surface.corners(), palette(norm(quantity(values))), edges, zoom=0.95)
+        view.draw(ax, palette(norm(quantity(values))))
         colour_bar(figure, ax, norm, palette, quantity.label, **bar)
     norm = state_bar(figure, axes[-1, -1], **bar)
-    draw_polygons_3d(axes[-1, -1], surface.corners(), STATE_COLOURS(norm(surface.cell_data["state"])), edges, zoom=0.95)
+    view.draw(axes[-1, -1], FACE_COLOURS(norm(face_states(view.data, length))))
+    view.write_names(axes[-1, -1])
     return figure
 
 
-def of_step(rock, grid, names, title, singles=()):
+def of_step(rock, grid, names, title, singles=(), whole=False):
     """Returns the figure of the grids of rock and fractures (at least one face); `singles` as in results.json."""
-    plane = grid.GetCell(0).GetCellDimension() == 1
-    surface = read.segments(grid) if plane else read.surface(grid)
-    sizes = scales(rock, surface.cell_data)
-    return along(surface, names, title, *sizes, singles) if plane else on_faces(surface, title, *sizes)
+    if grid.GetCell(0).GetCellDimension() == 1:
+        surface = read.segments(grid)
+        return along(surface, names, title, *scales(rock, surface.cell_data), singles)
+    view = Network(rock, grid, names, singles, whole)
+    return on_faces(view, title, *scales(rock, view.data))

@@ -86,18 +86,18 @@ def starts_unloaded(scene):
 
 
 def of_fractures(steps, names, title, length=0, stress=0, unloaded=False):
-    """Returns the figure of means over each fracture: shear along the main direction of its jump, normal, and dilation.
+    """Returns the figure of means over each single fracture: shear along the main direction of its jump, normal, dilation.
 
     Length and stress are reference values of round-off, at least the largest means. Curves start at zero for an
     unloaded initial state, otherwise at the first step."""
     if not names:
         raise PlotError(f"{title}: the run has no fractures")
 
-    def local(name, key):
-        means = np.array([step["fractures"][name][key]["local"] for step in steps])
+    def local(k, key):
+        means = np.array([step["single_fractures"][key][k] for step in steps])
         return np.concatenate([0 * means[:1], means]) if unloaded else means
 
-    means = {name: (local(name, "mean_jump"), local(name, "mean_traction")) for name in names}
+    means = {name: (local(k, "mean_jump_local"), local(k, "mean_traction_local")) for k, name in enumerate(names)}
     length = max(length, *(np.max(np.abs(jump)) for jump, _ in means.values()))
     stress = max(stress, *(np.max(np.abs(traction)) for _, traction in means.values()))
     shears, normals, dilations = {}, {}, {}

@@ -6,11 +6,11 @@ from bulk import rim
 from fractures import effective, scales, traces_of
 from matplotlib import patheffects
 from matplotlib.collections import LineCollection
-from matplotlib.colors import to_rgba
-from style import FAINT, INK, NOISE, Quantity, STATE_COLOURS, colour_bar, draw_polygons_3d, limits, plt, without_noise
+from network import Network
+from places import place_of_name, region
+from style import FAINT, INK, NOISE, Quantity, STATE_COLOURS, colour_bar, limits, plt, without_noise
 
 LARGEST_TENDENCY = 1.5  # upper limit of the colours
-LIGHT = np.array([0.3, -0.5, 0.81])  # direction of the light
 
 
 def slip_tendency(data, stress):
@@ -56,21 +56,6 @@ def draw_directions(ax, shapes, values, norm, colours):
     orientations.draw(ax, 2 if shapes[0].shape[1] == 2 else 3, [(colour, part) for colour, part in parts if part])
 
 
-def shaded(colours, corners):
-    """Returns the colours of faces in space, darker for faces turned away from the light."""
-    normals = np.array([orientations.area_vector(x) for x in corners])
-    bright = 0.7 + 0.3 * abs(normals @ LIGHT) / np.linalg.norm(normals, axis=1)
-    return np.column_stack([colours[:, :3] * bright[:, None], colours[:, 3]])
-
-
-def draw_faces(ax, surface, colours):
-    """Draws the faces, and the rims of fractures as polygons of two corners, which faces may hide."""
-    corners, edges = surface.corners(), surface.points[rim(surface, None)]
-    faces = shaded(colours, corners)
-    ink = np.tile(to_rgba(INK), (len(edges), 1))
-    draw_polygons_3d(ax, corners + list(edges), np.concatenate([faces, ink]), np.concatenate([faces, ink]), zoom=1.05)
-
-
 def line_width(ends, outline):
     """In points: less the denser the traces are, by their mean spacing, the area of the map over their length."""
     size = np.ptp(outline, axis=0)
@@ -91,22 +76,12 @@ def draw_lines(ax, surface, outline, values, norm, colours):
     ax.set(xlabel="x (m)", ylabel="y (m)")
 
 
-def place_of_name(name, places, extent, taken):
-    """A place as near to the middle as possible where the name overlaps no other, and the half size of the name; or None.
-    `taken` are such pairs; a letter is about 1/60 as wide as the map, and 1/28 high."""
-    half = 0.5 * extent * (len(name) / 60, 1 / 28)
-    for place in sorted(places, key=lambda x: np.linalg.norm(x - places[len(places) // 2])):
-        if all(np.any(abs(place - other) > half + size) for other, size in taken):
-            return place, half
-    return None
-
-
 FEW = 12
 
 
-def write_names(ax, surface, names, singles, length):
+def write_names(ax, surface, names, singles, length, shown):
     """At traces that fractures.png shows in colour, the largest jump first, without names that would overlap. Of more than
-    FEW traces, only those with slip. `length` is the reference value of round-off."""
+    FEW traces, only those with slip. `length` is the reference value of round-off, `shown` the box of the map."""
     slips = without_noise(surface.cell_data["slip"], length) > 0
     jump = np.linalg.norm(surface.cell_data["jump local"][:, 1:], axis=1)
     ends = np.array([surface.points[face[:2], :2].mean(axis=0) for face in surface.polygons])
@@ -117,37 +92,65 @@ def write_names(ax, surface, names, singles, length):
         traces = [trace for trace in traces if np.any(slips[trace.faces])]
     taken = []
     for trace in sorted(traces, key=lambda trace: -np.max(jump[trace.faces])):
-        places = ends[trace.faces][np.unique(np.linspace(0, len(trace.faces) - 1, 9).round().astype(int))]
-        found = place_of_name(trace.name, list(places), np.ptp(surface.points[:, :2], axis=0), taken)
+        places = ends[trace.faces]
+        places = places[np.all((places > shown[0]) & (places < shown[1]), axis=1)]
+        places = places[np.unique(np.linspace(0, max(len(places) - 1, 0), 9).round().astype(int))] if len(places) else places
+        places = sorted(places, key=lambda place: np.linalg.norm(place - places[len(places) // 2]))
+        found = place_of_name(trace.name, places, np.ptp(shown, axis=0), taken)
         if found:
             taken.append(found)
             text = ax.text(*found[0], trace.name, fontsize=6, ha="center", va="center", zorder=6)
             text.set_path_effects([patheffects.withStroke(linewidth=1.5, foreground="white")])
 
 
-def of_step(rock, joints, names, title, singles=()):
-    """Returns the figure of the grids of rock and fractures with these names; `singles` as in results.json."""
-    plane = read.is_plane(rock)
-    surface = read.segments(joints) if plane else read.surface(joints)
-    skin = read.surface(rock)
-    outline = skin.points[rim(skin, joints)][:, :, :2] if plane else None
-    height = np.clip(np.ptp(skin.points[:, 1]) / np.ptp(skin.points[:, 0]), 0.4, 2) if plane else 1.02
-    figure = plt.figure(figsize=(9, 7.6 * height + 0.8))
-    figure.suptitle(title, fontsize=10)
-    bar = {} if plane else {"location": "bottom", "shrink": 0.7, "pad": 0.1}
+def of_plane(rock, joints, names, title, singles, whole):
+    """Returns the figure of traces. It shows the region with slip if it is much smaller than the rock."""
+    surface, skin = read.segments(joints), read.surface(rock)
+    outline = skin.points[rim(skin, joints)][:, :, :2]
+    body = np.array([outline.min(axis=(0, 1)), outline.max(axis=(0, 1))])
+    centres = np.array([surface.points[face[:2], :2].mean(axis=0) for face in surface.polygons])
+    shown = None if whole else region(centres, surface.cell_data["slip"], body)
+    size = np.ptp(body if shown is None else shown, axis=0)
     sizes = scales(rock, surface.cell_data)
+    figure = plt.figure(figsize=(9, 7.6 * np.clip(size[1] / size[0], 0.4, 2) + 0.8))
+    figure.suptitle(title + ("" if shown is None else ", region with slip"), fontsize=10)
     for k, (values, norm, colours, label) in zip((1, 3, 4), panels(surface.cell_data, *sizes)):
-        ax = figure.add_subplot(2, 2, k, projection=None if plane else "3d")
-        if plane:
-            draw_lines(ax, surface, outline, values, norm, colours)
-            if k == 3:
-                write_names(ax, surface, names, singles, sizes[0])
-        else:
-            draw_faces(ax, surface, colours(norm(np.ma.masked_invalid(values))))
-        colour_bar(figure, ax, norm, colours, label, **bar)
+        ax = figure.add_subplot(2, 2, k)
+        draw_lines(ax, surface, outline, values, norm, colours)
+        if shown is not None:
+            ax.set(xlim=shown[:, 0], ylim=shown[:, 1])
+        if k == 3:
+            write_names(ax, surface, names, singles, sizes[0], body if shown is None else shown)
+        colour_bar(figure, ax, norm, colours, label)
         if k == 1:
-            shapes = ([x[:2, :2] for x in surface.corners()], values) if plane else planes(surface, values)
-            draw_directions(figure.add_subplot(2, 2, 2, projection="polar"), *shapes, norm, colours)
-            if np.isnan(values).any():
-                ax.legend([plt.Rectangle((0, 0), 1, 1, color=colours(np.nan))], ["open"], loc="lower left", bbox_to_anchor=(0, 1))
+            draw_tendency(figure, ax, ([x[:2, :2] for x in surface.corners()], values), norm, colours)
     return figure
+
+
+def of_body(view, rock, title):
+    figure = plt.figure(figsize=(9, 8.6))
+    figure.suptitle(title, fontsize=10)
+    figure.supxlabel(view.note(), fontsize=8)
+    for k, (values, norm, colours, label) in zip((1, 3, 4), panels(view.data, *scales(rock, view.data))):
+        ax = figure.add_subplot(2, 2, k)
+        view.draw(ax, colours(norm(np.ma.masked_invalid(values))))
+        if k == 3:
+            view.write_names(ax)
+        colour_bar(figure, ax, norm, colours, label, location="bottom", shrink=0.7, pad=0.02)
+        if k == 1:
+            draw_tendency(figure, ax, planes(view.surface, values), norm, colours)
+    return figure
+
+
+def draw_tendency(figure, ax, shapes, norm, colours):
+    """Draws the directions of shapes and their slip tendency, and explains the colour of open faces."""
+    draw_directions(figure.add_subplot(2, 2, 2, projection="polar"), *shapes, norm, colours)
+    if np.isnan(shapes[1]).any():
+        ax.legend([plt.Rectangle((0, 0), 1, 1, color=colours(np.nan))], ["open"], loc="lower left", bbox_to_anchor=(0, 1))
+
+
+def of_step(rock, joints, names, title, singles=(), whole=False):
+    """Returns the figure of the grids of rock and fractures with these names; `singles` as in results.json."""
+    if read.is_plane(rock):
+        return of_plane(rock, joints, names, title, singles, whole)
+    return of_body(Network(rock, joints, names, singles, whole), rock, title)

@@ -221,6 +221,11 @@ class Surface:
         points = self.points if points is None else points
         return [points[polygon] for polygon in self.polygons]
 
+    def part(self, chosen):
+        """Returns the surface of the chosen polygons."""
+        return Surface(self.points, [self.polygons[k] for k in chosen],
+                       {name: values[chosen] for name, values in self.cell_data.items()}, self.point_data)
+
 
 def arrays(data):
     return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}

@@ -19,21 +19,19 @@ def injected(times, rates, start=0.0):
     return np.cumsum(np.diff(np.concatenate([[start], times])) * rates)
 
 
-def panels(steps, start=0.0, dim=3):
-    """Yields (label, unit, {name: values over the steps}) of the data in a run."""
+def panels(steps, singles, start=0.0, dim=3):
+    """Yields (label, unit, {name: values over the steps}) of a run; `singles`: names of single fractures."""
     times = np.array([step["time"] for step in steps])
-    fractures = steps[-1].get("fractures", {})
     for key, label, base in (
         ("max_slip", "largest slip", "m"),
         ("mean_opening", "mean opening", "m"),
         ("mean_fracture_pressure", "mean pressure in fractures", "Pa"),
         ("mean_fracture_temperature", "mean temperature of fractures", "K"),
     ):
-        names = [name for name in fractures if all(key in step["fractures"].get(name, {}) for step in steps)]
-        if names:
-            yield label, base, {
-                name: np.array([step["fractures"][name][key] for step in steps]) for name in sorted(names, key=natural)
-            }
+        if singles and all(key in step.get("single_fractures", {}) for step in steps):
+            values = np.array([step["single_fractures"][key] for step in steps], dtype=float)
+            order = sorted(range(len(singles)), key=lambda k: natural(singles[k]))
+            yield label, base, {singles[k]: values[:, k] for k in order}
     wells = [name for name in steps[-1].get("wells", {}) if all(name in step.get("wells", {}) for step in steps)]
     def of_wells(key):
         return {
@@ -81,9 +79,9 @@ def figure_of(title, times, name, content):
     return figure
 
 
-def of_run(steps, title, wanted=None, start=0.0, dim=3):
+def of_run(steps, singles, title, wanted=None, start=0.0, dim=3):
     """Returns the figure of at least two steps, or None without data."""
-    content = list(panels(steps, start, dim)) if len(steps) > 1 else []
+    content = list(panels(steps, singles, start, dim)) if len(steps) > 1 else []
     content = [
         (label, base, curves)
         for label, base, curves in content

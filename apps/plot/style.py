@@ -8,7 +8,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
-from matplotlib.transforms import Bbox
 
 INK, FAINT, PAPER = "#262933", "#8a8f99", "#f4f1ea"
 LINES = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # suits colour blindness (Tol)
@@ -18,6 +17,8 @@ MOST_CURVES = len(LINES) * len(STYLES)  # with different styles
 NOISE = 1e-9  # relative round-off: smaller values are zero, smaller differences are equal
 STATES = ["open", "stick", "slip"]
 STATE_COLOURS = ListedColormap(["#66ccee", "#bbbbbb", "#cc3311"])
+FACE_STATES = ["open", "stick", "stick, has slipped", "slip"]
+FACE_COLOURS = ListedColormap(["#66ccee", "#bbbbbb", "#eebb66", "#cc3311"])
 
 plt.rcParams.update({
     "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9, "xtick.labelsize": 8, "ytick.labelsize": 8,
@@ -177,10 +178,10 @@ def colour_bar(figure, ax, norm, colours, label, **where):
 
 
 def state_bar(figure, ax, **where):
-    """Draws the three contact states as a colour bar; returns its norm."""
-    norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
-    bar = colour_bar(figure, ax, norm, STATE_COLOURS, "contact state (-)", **where)
-    bar.set_ticks([0, 1, 2], labels=STATES)
+    """Draws the contact states of faces as a colour bar; returns its norm."""
+    norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5, 3.5], 4)
+    bar = colour_bar(figure, ax, norm, FACE_COLOURS, "contact state (-)", **where)
+    bar.set_ticks(range(4), labels=[name.replace(", ", ",\n") for name in FACE_STATES])
     bar.ax.tick_params(length=0)
     return norm
 
@@ -191,40 +192,9 @@ def nice(number):
     return float(max(k * power for k in (1, 2, 5) if k * power <= number * (1 + 1e-9)))
 
 
-def draw_polygons_3d(ax, corners, faces, edges, zoom=1.0):
-    """Draws polygons with their colours in a box with equal scales, seen from a corner."""
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-    ax.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=edges, linewidths=0.3))
-    low, high = np.min(np.concatenate(corners), axis=0), np.max(np.concatenate(corners), axis=0)
-    flat = high - low < 1e-9 * np.max(high - low)
-    thin = high - low < 0.2 * np.max(high - low)  # labels of several ticks would overlap
-    room = 0.15 * flat * np.max(high - low)
-    for name, a, b, extra, one in zip("xyz", low, high, room, thin):
-        axis = getattr(ax, f"{name}axis")
-        getattr(ax, f"set_{name}lim")(a - extra, b + extra)
-        axis.set_pane_color((1, 1, 1, 0))
-        axis.set_major_locator(plt.FixedLocator([0.5 * (a + b)]) if one else plt.MaxNLocator(3))
-        if one:
-            axis.set_major_formatter(plt.FixedFormatter([f"{name} = {a:.4g} m" if extra else f"{name} = {a:.4g}\nto {b:.4g} m"]))
-        else:
-            axis.set_label_text(f"{name} (m)")
-        axis.labelpad = 0 if name == "z" else 3
-        ax.tick_params(axis=name, pad=2 if name == "z" else -1)
-    low, high = low - room, high + room
-    ax.set_box_aspect(high - low, zoom=zoom)
-    ax.set_proj_type("ortho")
-    ax.view_init(elev=22, azim=-58)
-
-
 def save(figure, picture, dpi):
-    """Writes a PNG file with the labels of 3D axes, which are not in matplotlib's bounding box of axes.
-
-    The argument bbox_extra_artists would be slower: matplotlib would measure these labels once for each of the axes."""
+    """Writes a PNG file; the layout is that of the first drawing, which is faster than a second layout."""
     figure.set_dpi(dpi)
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # the layout is final
-    renderer = figure.canvas.get_renderer()
-    labels = [axis.label.get_window_extent(renderer).transformed(figure.dpi_scale_trans.inverted())
-              for ax in figure.axes if ax.name == "3d" for axis in (ax.xaxis, ax.yaxis, ax.zaxis)]
-    drawn = Bbox.union([figure.get_tightbbox(renderer), *labels])
-    figure.savefig(picture, dpi=dpi, bbox_inches=drawn.padded(plt.rcParams["savefig.pad_inches"]))
+    figure.set_layout_engine("none")
+    figure.savefig(picture, dpi=dpi)

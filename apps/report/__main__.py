@@ -2,6 +2,7 @@
 view, convergence and timing.
 
 DIR is the output directory of `sprekk run`. The report is DIR/report.html."""
+
 import argparse
 import subprocess
 import sys
@@ -26,7 +27,7 @@ def arguments(words):
 
 
 def pictures(directory, dpi):
-    """Returns (name, PNG) of each picture of `sprekk plot`, and its messages about missing pictures."""
+    """Returns (name, PNG) of each picture of `sprekk plot`, (file name, text) of each table, and its messages."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
             [sys.executable, "-B", str(ROOT / "apps" / "plot"), str(directory), "--output", folder, "--dpi", str(dpi)],
@@ -37,7 +38,9 @@ def pictures(directory, dpi):
         said = done.stderr.strip().replace("sprekk plot: ", "")
         if done.returncode:
             raise PlotError(said)
-        return [(Path(line).stem, Path(line).read_bytes()) for line in done.stdout.splitlines()], said
+        files = [Path(line) for line in done.stdout.splitlines()]
+        drawn = [(file.stem, file.read_bytes()) for file in files if file.suffix == ".png"]
+        return drawn, [(file.name, file.read_text()) for file in files if file.suffix == ".csv"], said
 
 
 def report(options):
@@ -57,14 +60,16 @@ def report(options):
     content = read.results(directory)
     dim = content.get("mesh", {}).get("dimension", 3)
     entries = scene.Scene(directory, ROOT / "docs/use/reference.md", dim)
-    drawn, left_out = pictures(directory, options.dpi)
+    drawn, tables, left_out = pictures(directory, options.dpi)
+    start = float(entries.entries.get("Time", {}).get("start", 0))
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
     html = page.of_run(
         directory.resolve().name,
         content,
         entries,
         checks.of_run(directory, content, entries),
-        figures.of_run(content, entries.reference),
+        figures.of_run(content, entries.reference, start),
+        tables,
         drawn,
         left_out,
         view.of_run(directory) if viewer else None,

@@ -1,6 +1,8 @@
 """Key figures: tables of the last step, and of the cost of the run."""
+
 from collections import namedtuple
 
+import events
 import numpy as np
 from numbers_in_words import RATES, in_unit, number, quantity, unit_of
 
@@ -10,6 +12,7 @@ NOISE = 1e-9  # round-off relative to the largest value of a column
 
 OF_FRACTURES = [
     ("area", "length or area", "m"),
+    ("first_slip", "first slip at", "s"),
     ("fraction_slip", "slipping at the end", ""),
     ("fraction_open", "open at the end", ""),
     ("mean_slip", "mean slip", "m"),
@@ -32,11 +35,18 @@ def column(title, values, base):
     ]
 
 
-def singles(content, step):
-    """Returns {name: numbers} of single fractures, in the form of `fractures` of a step; empty without this data."""
+def singles(content, step, found):
+    """Returns {name: numbers} of single fractures, in the form of `fractures` of a step; empty without this data.
+
+    `found` are the slip events of the run."""
+    first = {event.fracture: event.start for event in reversed(found)}
     columns = step.get("single_fractures", {})
     return {
-        one["name"]: {"area": one["area"], **{key: values[k] for key, values in columns.items()}}
+        one["name"]: {
+            "area": one["area"],
+            "first_slip": first.get(one["name"]),
+            **{key: values[k] for key, values in columns.items()},
+        }
         for k, one in enumerate(content.get("single_fractures", []))
         if columns
     }
@@ -48,7 +58,7 @@ def of_fractures(fractures, dim):
     shown = names[:MOST_ROWS]
     columns = [("fracture", shown)]
     for key, title, base in OF_FRACTURES:
-        if any(key in fractures[name] for name in shown):
+        if any(fractures[name].get(key) is not None for name in shown):
             if key == "area":
                 base, title = ("m²", "area") if dim == 3 else ("m", "length")
             if key == "moment" and dim == 2:
@@ -69,7 +79,11 @@ def of_joints(content, reference):
         (
             name,
             *(
-                in_unit(own[name][entry], reference.entry(("Materials", "NAME"), entry)[0]) if entry in own[name] else "–"
+                (
+                    in_unit(own[name][entry], reference.entry(("Materials", "NAME"), entry)[0])
+                    if entry in own[name]
+                    else "–"
+                )
                 for entry in entries
             ),
         )
@@ -128,10 +142,37 @@ def of_costs(content):
     yield Table("Time", ["part", "calls", "seconds", "CPU seconds"], rows, "parts may include others")
 
 
-def of_run(content, reference):
+def of_events(found, dim):
+    """Yields the table of slip events, the largest first."""
+    shown = sorted(found, key=lambda event: -event.moment)[:MOST_ROWS]
+    if not shown:
+        return
+    moment = ("moment per depth", "N") if dim == 2 else ("moment", "N m")
+    columns = [("fracture", [event.fracture for event in shown])] + [
+        column(title, [getattr(event, key) for event in shown], base)
+        for key, title, base in (
+            ("start", "start", "s"),
+            ("end", "end", "s"),
+            ("slip", "mean slip", "m"),
+            ("moment", *moment),
+            ("magnitude", "magnitude" + (" per metre of depth" if dim == 2 else ""), ""),
+        )
+    ]
+    others = f"{len(found) - len(shown)} smaller ones are in events.csv" if len(found) > len(shown) else ""
+    yield Table("Slip events", [title for title, _ in columns], list(zip(*(values for _, values in columns))), others)
+
+
+def of_run(content, reference, start=0.0):
     """Returns the tables of results and the tables of costs. `reference`: units of entries, scene.Reference."""
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
-    fractures = singles(content, last) or last.get("fractures", {})
-    tables = [*of_fractures(fractures, dim), *of_joints(content, reference), *of_wells(last, dim), *of_boundaries(last)]
+    found = events.of_run(content, start)
+    fractures = singles(content, last, found) or last.get("fractures", {})
+    tables = [
+        *of_fractures(fractures, dim),
+        *of_events(found, dim),
+        *of_joints(content, reference),
+        *of_wells(last, dim),
+        *of_boundaries(last),
+    ]
     return tables, list(of_costs(content))

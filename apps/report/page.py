@@ -1,4 +1,5 @@
 """HTML page of a report, without external references, for screens, phones and paper."""
+
 import base64
 import html
 import json
@@ -17,6 +18,7 @@ CAPTIONS = {
     "loops": "Mean traction against mean jump of fractures, over all steps",
     "mohr": "Stress on fracture faces, compared with the strength of the joints",
     "series": "Over time",
+    "events": "Magnitudes of slip events over the injection rate, and cumulated moment",
     "magnitudes": "Number of fractures with at least a given magnitude",
     "convergence": "Iterations of each step, and residuals at its end",
 }
@@ -46,7 +48,11 @@ def number_of_fractures(results, scene):
     """Returns the numbers of single fractures and of their sets, which are the subsections of `Fractures`."""
     sets = sum(isinstance(value, dict) for value in scene.entries.get("Fractures", {}).values())
     singles = len(results.get("single_fractures", [])) or sets
-    return count(singles, "fracture") + (f" in {count(sets, 'set')}" if singles != sets else "") if sets else "no fractures"
+    return (
+        count(singles, "fracture") + (f" in {count(sets, 'set')}" if singles != sets else "")
+        if sets
+        else "no fractures"
+    )
 
 
 def summary(results, scene):
@@ -90,6 +96,15 @@ def figure(name, png):
     )
 
 
+def downloads(files):
+    """Returns links to tables, which the page contains."""
+    links = (
+        f"<a download='{name}' href='data:text/csv;base64,{base64.b64encode(content.encode()).decode()}'>{name}</a>"
+        for name, content in files
+    )
+    return f"<p class='note'>Tables of all steps: {', '.join(links)}</p>" if files else ""
+
+
 def view_part(view, viewer):
     """Returns the 3D view or a note, and the script for the end of the page."""
     if viewer is None:
@@ -107,7 +122,7 @@ def view_part(view, viewer):
     return place, f"<script type='application/json' id='view-data'>{data}</script><script>{viewer}</script>"
 
 
-def of_run(name, results, scene, checks, tables, drawn, left_out, view, viewer):
+def of_run(name, results, scene, checks, tables, files, drawn, left_out, view, viewer):
     style = (Path(__file__).parent / "page.css").read_text()
     found, costs = tables
     convergence = [picture for picture in drawn if picture[0] == "convergence"]
@@ -119,7 +134,7 @@ def of_run(name, results, scene, checks, tables, drawn, left_out, view, viewer):
             f"<p>{text(summary(results, scene))}</p><details><summary>Entries that differ from the defaults</summary>{scene_in_words(scene)}</details>",
         ),
         ("checks", "Checks", checks_list(checks)),
-        ("figures", "Key figures", "".join(map(table, found)) or "<p>None.</p>"),
+        ("figures", "Key figures", ("".join(map(table, found)) or "<p>None.</p>") + downloads(files)),
         ("turn", "View to turn", place),
         (
             "pictures",

@@ -2,6 +2,7 @@
 """Content of reports: report_test.py PROGRAM ROOT MPIEXEC
 
 Requires matplotlib, numpy and VTK's Python. If one is missing, the status is 77, for ctest's "skipped"."""
+
 import base64
 import contextlib
 import importlib.util
@@ -60,7 +61,10 @@ class Pages(ReportTest):
         content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=8", "Output.error estimate=true")
         page = Path(self.write()).read_text()
         self.assertIn("has no 3D view", page)
-        self.assertEqual(len(re.findall("<img ", page)), 8)
+        self.assertEqual(len(re.findall("<img ", page)), 9)
+        tables = re.findall(r"<a download='(\w+.csv)' href='data:text/csv;base64,([^']*)'", page)
+        self.assertEqual([name for name, _ in tables], ["events.csv", "fractures_long.csv", "fractures_wide.csv"])
+        self.assertTrue(base64.b64decode(tables[0][1]).startswith(b"fracture,start [s],end [s],slip [m],moment [N],"))
         self.assertEqual(re.findall(r"""(?:src|href)=['"](?!data:|#)[^'"]*""", page), [])
         slip = content["steps"][-1]["fractures"]["shear plane"]["max_slip"]
         self.assertIn(f"<td>{1e3 * slip:.4g}</td>", page)
@@ -283,19 +287,29 @@ class Words(ReportTest):
         self.assertEqual(numbers_in_words.in_unit("{0, ramp(t)}", "m"), "{0, ramp(t)} m")
 
     def test_single_fractures_take_the_place_of_sets(self):
-        """Fractures are sorted by slip."""
+        """Fractures are sorted by slip. The times of first slip and the table of events are those of the moments."""
         step = {
+            "time": 4.0,
             "fractures": {"set": {"area": 3.0, "max_slip": 2e-3}},
-            "single_fractures": {"max_slip": [1e-3, 2e-3], "moment": [0.0, 5e9]},
+            "single_fractures": {"max_slip": [1e-3, 2e-3], "mean_slip": [1e-3, 2e-3], "moment": [0.0, 5e9]},
         }
         content = {
             "mesh": {"dimension": 2},
             "single_fractures": [{"name": "a", "set": "set", "area": 1.0}, {"name": "b", "set": "set", "area": 2.0}],
             "steps": [step],
         }
-        (table,), _ = figures.of_run(content, None)
-        self.assertEqual(table.columns, ["fracture", "length (m)", "largest slip (mm)", "moment per depth (N)"])
-        self.assertEqual(table.rows, [("b", "2", "2", "5 × 10⁹"), ("a", "1", "1", "0")])
+        (table, events), _ = figures.of_run(content, None, 3.0)
+        titles = [
+            "fracture",
+            "length (m)",
+            "first slip at (s)",
+            "mean slip (mm)",
+            "largest slip (mm)",
+            "moment per depth (N)",
+        ]
+        self.assertEqual(table.columns, titles)
+        self.assertEqual(table.rows, [("b", "2", "3", "2", "2", "5 × 10⁹"), ("a", "1", "–", "1", "1", "0")])
+        self.assertEqual(events.rows, [("b", "3", "4", "2", "5 × 10⁹", "0.3993")])
         del content["single_fractures"]
         (table,), _ = figures.of_run(content, None)
         self.assertEqual([row[0] for row in table.rows], ["set"])

@@ -1,0 +1,61 @@
+"""Views of fractures in space: fractures with values, edges of the rock, names, and the list of hidden fractures."""
+
+import bulk
+import numpy as np
+import read
+import space
+from places import region
+from style import INK
+
+MOST_NAMES = 12  # of fractures in one view
+MOST_LISTED = 8  # hidden fractures
+
+
+class Network:
+    """Fractures in space, with the values of their faces in `data`.
+
+    The box is the rock, or the region with slip if it is much smaller. Faces outside of it are left out."""
+
+    def __init__(self, rock, joints, names, singles=(), whole=False):
+        faces, skin = read.surface(joints), space.outer(read.surface(rock))
+        data = faces.cell_data
+        body = space.bounds_of(skin.points[np.concatenate(skin.polygons)])
+        centres = np.array([faces.points[polygon].mean(axis=0) for polygon in faces.polygons])
+        part = None if whole else region(centres, data["slip"], body)
+        self.bounds, self.zoomed = (body, False) if part is None else (part, True)
+        self.surface = faces.part(np.flatnonzero(space.inside(centres, self.bounds))) if self.zoomed else faces
+        self.data = self.surface.cell_data
+        single = singles and "single fracture" in data
+        self.numbers = self.data["single fracture" if single else "fracture"].astype(int)
+        names = [one["name"] for one in singles] if single else names
+        self.names = {k: names[k] if k < len(names) else f"fracture {k}" for k in set(self.numbers.tolist())}
+        edges = space.edges(skin)
+        if self.zoomed and len(edges.polygons):
+            ends = np.array([edges.points[polygon].mean(axis=0) for polygon in edges.polygons])
+            edges = edges._replace(
+                polygons=[edges.polygons[k] for k in np.flatnonzero(space.inside(ends, self.bounds))]
+            )
+        rims = space.Part(faces.points, list(bulk.rim(self.surface, None)), INK)
+        self.lines = [edges, rims]
+        self.places = space.visible(self.surface, self.numbers, self.bounds)
+        self.hidden = [self.names[k] for k in space.hidden(self.surface, self.numbers, self.places, self.bounds)]
+
+    def draw(self, ax, colours):
+        space.draw(ax, [space.Part(self.surface.points, self.surface.polygons, colours), *self.lines], self.bounds)
+
+    def write_names(self, ax):
+        """Writes names, those with the largest tangential jumps first; of many fractures only those with a jump."""
+        jump = np.linalg.norm(self.data["jump local"][:, 1:], axis=1)
+        largest = {k: np.max(jump[self.numbers == k]) for k in self.places}
+        order = sorted(self.places, key=lambda k: -largest[k])
+        if len(order) > MOST_NAMES:
+            order = [k for k in order if largest[k] > 1e-3 * largest[order[0]]]
+        space.write_names(
+            ax, [(self.names[k], self.places[k]) for k in order if len(self.places[k])], self.bounds, MOST_NAMES
+        )
+
+    def note(self):
+        """Returns the remark on the region and on hidden fractures."""
+        others = len(self.hidden) - MOST_LISTED
+        listed = ", ".join(self.hidden[:MOST_LISTED]) + (f" and {others} more" if others > 0 else "")
+        return "; ".join(["region with slip"] * self.zoomed + [f"hidden behind others: {listed}"] * bool(self.hidden))

@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""Slip events, tables, and pictures in space: plot_space_test.py PROGRAM ROOT MPIEXEC
+
+The pictures require Xvfb. If it is missing, the status is 77, for ctest's "skipped"."""
+
+import csv
+import io
+import shutil
+import sys
+
+from plotting import PlotTest  # before other modules: it skips the test without them
+from program import ROOT, main
+import events
+import magnitudes
+import network
+import numpy as np
+import orientations
+import places
+import read
+import space
+import style
+
+if not shutil.which("Xvfb"):
+    print("skipped: Xvfb is missing")
+    sys.exit(77)
+
+SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+
+
+def run(times, *moments):
+    """Returns the results of fractures with these moments; the mean slip is 1e-9 m per N m."""
+    lists = [{"moment": list(now), "mean_slip": [1e-9 * m for m in now]} for now in zip(*moments)]
+    return {
+        "single_fractures": [{"name": name} for name in "abc"[: len(moments)]],
+        "steps": [{"time": t, "single_fractures": one} for t, one in zip(times, lists)],
+        "units": {"moment": "N*m"},
+    }
+
+
+class Events(PlotTest):
+    def test_events_of_known_moments(self):
+        """Steps in sequence are one event. Reverse slip counts. A fracture with round-off has no event."""
+        content = run((1, 2, 3, 4, 5), (0, 1e9, 1e9, 2e9, 4e9), (0, 3e9, 0, 0, 0), (0, 1e-3, 2e-3, 3e-3, 4e-3))
+        found = events.of_run(content)
+        self.assertEqual(
+            [(event.fracture, event.start, event.end) for event in found], [("a", 1, 2), ("b", 1, 3), ("a", 3, 5)]
+        )
+        self.assertEqual([event.moment for event in found], [1e9, 6e9, 3e9])
+        self.assertTrue(np.allclose([event.slip for event in found], [1, 6, 3]))
+        self.assertEqual([event.cumulated for event in found], [1e9, 7e9, 1e10])
+        self.assertAlmostEqual(found[0].magnitude, (9 - 9.1) / 1.5, 12)
+
+    def test_events_do_not_depend_on_the_number_of_steps(self):
+        """Steady slip of a thousand steps is one event; slip much slower than the mean is none."""
+        for n in (10, 1000):
+            times = np.linspace(2 / n, 2, n)
+            (event,) = events.of_run(run(times, 1e9 * np.minimum(times, 1 + 1e-3 * (times - 1))))
+            self.assertAlmostEqual(event.end, 1, 1)
+            self.assertLess(abs(event.moment / 1e9 - 1), 0.01)
+
+    def test_tables_are_those_of_the_results(self):
+        content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=8", "Output.vtu=false", "Output.time unit=h")
+        self.draw(self.folder / "out", "--dpi", 30)
+        long, wide, rows = (
+            list(csv.DictReader((self.folder / "out" / name).read_text().splitlines()))
+            for name in ("fractures_long.csv", "fractures_wide.csv", "events.csv")
+        )
+        moments = [step["single_fractures"]["moment"][0] for step in content["steps"]]
+        total = float(rows[-1]["cumulated_moment [N]"])
+        self.assertAlmostEqual(total / np.sum(abs(np.diff(moments, prepend=0))), 1, 2)
+        self.assertTrue(
+            all(float(row["end [h]"]) * 3600 in [step["time"] for step in content["steps"]] for row in rows)
+        )
+        for row, all_of_step, moment in zip(long, wide, moments, strict=True):
+            self.assertEqual((row["fracture"], float(row["moment [N]"])), ("shear plane", moment))
+            self.assertEqual(all_of_step["shear plane: moment [N]"], row["moment [N]"])
+        self.assertEqual(row["has_slipped [-]"], "1")
+        self.assertIn("mean_traction_local t [Pa]", row)
+
+    def test_magnitudes_over_time(self):
+        """Dots are at the ends of events, hollow at the end of the run, over the injection rate."""
+        content = run((3600, 7200, 10800), (1e9, 1e9, 2e9))
+        for step in content["steps"]:
+            step["wells"] = {"in": {"rate": 0.5}, "out": {"rate": -0.2}}
+        figure = magnitudes.over_time(events.of_run(content), content["steps"], "run")
+        ax, below, behind = figure.axes
+        dots = {line.get_label(): line.get_xdata().tolist() for line in ax.lines}
+        self.assertEqual(dots, {"event": [1], "event that goes on at the end of the run": [3]})
+        self.assertEqual(below.lines[0].get_ydata().tolist(), [0, 1e9, 1e9, 2e9])
+        self.assertEqual((below.get_xlabel(), behind.get_ylabel()), ("time (h)", "injection rate (m³/s)"))
+        self.assertEqual(magnitudes.injection(content["steps"]).tolist(), [0.5] * 3)
+        self.assertIsNone(magnitudes.over_time([], content["steps"], "run"))
+        self.assertEqual(
+            list(csv.reader(io.StringIO(events.as_csv(["a"], [[None], [np.nan], [1]])))), [["a"], [""], [""], ["1"]]
+        )
+
+
+class Space(PlotTest):
+    def surface(self, *squares):
+        data = {"slip": np.arange(len(squares), dtype=float), "fracture": np.arange(len(squares))}
+        return read.Surface(np.concatenate(squares), list(np.arange(4 * len(squares)).reshape(-1, 4)), data, {})
+
+    def test_nearer_faces_hide_others(self):
+        """The hidden square is behind the large one as seen from above and the south; half-hidden ones are named."""
+        towards = space.directions()[2]
+        surface = self.surface(SQUARE * 4, SQUARE + [1.5, 1.5, 0] - 2 * towards, SQUARE * [4, 4, 1] - [2, 0, 1])
+        bounds, numbers = space.bounds_of(surface.points), surface.cell_data["fracture"]
+        seen = space.visible(surface, numbers, bounds)
+        self.assertEqual(space.hidden(surface, numbers, seen, bounds), [1])
+        low, high = space.flat(4 * SQUARE).min(axis=0), space.flat(4 * SQUARE).max(axis=0)
+        self.assertTrue(np.all((seen[0] > low - 0.01) & (seen[0] < high + 0.01)))
+        pixel = np.ptp(space.frame(bounds), axis=1).max() / space.PIXELS
+        self.assertAlmostEqual(len(seen[0]) * pixel**2 / (16 * towards[2]), 1, 2)
+
+    def test_transparent_faces_show_others(self):
+        parts = [
+            space.Part(SQUARE, [np.arange(4)], "#ff0000"),
+            space.Part(SQUARE + [0, 0, 0.2], [np.arange(4)], "#0000ff", 0.3),
+        ]
+        picture = space.image(parts, space.bounds_of(np.concatenate([SQUARE, SQUARE + [0, 0, 0.2]])))
+        red, _, blue = picture[picture.shape[0] // 2, picture.shape[1] // 2].astype(int)
+        self.assertGreater(red, blue)
+        self.assertGreater(blue, 30)
+
+    def test_outer_faces(self):
+        """Faces between ranks and sides of fractures occur twice and are left out; sharp edges are those of the body."""
+        self.run_scene("verification/crossing_3d.xml", "Mesh.cells={4, 4, 4}", ranks=2)
+        skin = space.outer(read.surface(read.grid(read.written_steps(self.folder / "out", "bulk")[-1][1])))
+        low, high = space.bounds_of(skin.points)
+        area = sum(np.linalg.norm(orientations.area_vector(x)) for x in skin.corners())
+        a, b, c = high - low
+        self.assertAlmostEqual(area, 2 * (a * b + b * c + c * a), 9)
+        edges = space.edges(skin)
+        length = sum(np.linalg.norm(np.diff(edges.points[line], axis=0)) for line in edges.polygons)
+        self.assertAlmostEqual(length, 4 * (a + b + c), 5)
+
+    def test_coordinates_and_north_do_not_overlap(self):
+        for size in ((1, 1, 1), (10, 2, 1), (1, 8, 3)):
+            figure, ax = style.plt.subplots(figsize=(4, 4))
+            points = SQUARE * size + [0, 0, size[2]]
+            space.draw(ax, [space.Part(points, [np.arange(4)], "#ff0000")], np.array([[0, 0, 0], size], dtype=float))
+            figure.draw_without_rendering()
+            boxes = [text.get_window_extent() for text in ax.texts if text.get_text()]
+            self.assertTrue({"x (m)", "y (m)", "z (m)", "N"} <= {text.get_text() for text in ax.texts})
+            overlaps = [(i, j) for i in range(len(boxes)) for j in range(i) if boxes[i].overlaps(boxes[j])]
+            self.assertEqual(overlaps, [], [text.get_text() for text in ax.texts])
+
+    def test_region_with_slip(self):
+        """The region is around the changed places, inside of the whole; a change everywhere or nowhere has no region."""
+        whole, centres = np.array([[0.0, 0, 0], [10, 10, 10]]), np.array([[1.0, 1, 1], [2, 1, 1], [9, 9, 9]])
+        low, high = places.region(centres, np.array([1, 0.5, 0]), whole)
+        self.assertTrue(
+            np.all(low <= centres[0]) and np.all(high >= centres[1]) and np.all(low >= 0) and np.all(high < 5)
+        )
+        self.assertIsNone(places.region(centres, np.array([1, 0.5, 1]), whole))
+        self.assertIsNone(places.region(centres, np.zeros(3), whole))
+
+    def test_network(self):
+        """The box is that of the rock; every fracture is named or listed as hidden."""
+        content = self.run_scene("verification/crossing_3d.xml")
+        rock, joints = (
+            read.grid(read.written_steps(self.folder / "out", kind)[-1][1]) for kind in ("bulk", "fractures")
+        )
+        singles = content["single_fractures"]
+        view = network.Network(rock, joints, sorted(content["steps"][-1]["fractures"]), singles, whole=True)
+        self.assertTrue(np.allclose(view.bounds.T.ravel(), rock.GetBounds()))
+        figure, ax = style.plt.subplots()
+        view.draw(ax, np.tile([1.0, 0, 0], (len(view.surface.polygons), 1)))
+        drawn = len(ax.texts)
+        view.write_names(ax)
+        self.assertEqual(
+            {text.get_text() for text in ax.texts[drawn:]} | set(view.hidden), {one["name"] for one in singles}
+        )
+
+
+def area_vector(polygon):
+    x = polygon - polygon.mean(axis=0)
+    return 0.5 * np.cross(x, np.roll(x, -1, axis=0)).sum(axis=0)
+
+
+if __name__ == "__main__":
+    main()
