@@ -21,7 +21,7 @@ from estimate import LEVEL, Parameter, fit
 from measured import FitError, factor, read
 from point import Point, Specification, bounds, start_of
 
-TOLD_APART = 0.95  # larger correlations are reported
+LARGEST_CORRELATION = 0.95  # larger correlations are reported
 
 
 def arguments(words):
@@ -91,7 +91,7 @@ def fitted(point, comparison, named):
     return estimate, point.curve(dict(zip(paths, estimate.values)))[0]
 
 
-def told(estimate, parameters, comparison, curve):
+def lines_of(estimate, parameters, comparison, curve):
     """Yields the lines of the output."""
     width = max(len(p.name) for p in parameters)
     for p, value, interval, why in zip(parameters, estimate.values, estimate.intervals, estimate.why):
@@ -100,7 +100,7 @@ def told(estimate, parameters, comparison, curve):
         yield f"{p.name:{width}}  {value:.8g}{unit}  {LEVEL * 100:.0f} %: {what}"
     for i in range(len(parameters)):
         for j in range(i):
-            if abs(estimate.correlation[i, j]) > TOLD_APART:
+            if abs(estimate.correlation[i, j]) > LARGEST_CORRELATION:
                 yield (f'"{parameters[j].name}" and "{parameters[i].name}" are strongly correlated: the correlation of '
                        f"their errors is {estimate.correlation[i, j]:.3f}")
     for kind, rows in ("fitted", comparison.rows), ("predicted", comparison.later):
@@ -133,7 +133,7 @@ def main(words=None):
         until = np.inf if options.until is None else options.until * factor(options.csv, name)
         comparison = Comparison(options.csv, along, matched, until)
         estimate, curve = fitted(point, comparison, named)
-        print("\n".join(told(estimate, [p for _, p in named], comparison, curve)))
+        print("\n".join(lines_of(estimate, [p for _, p in named], comparison, curve)))
         from picture import draw
         print(draw(comparison, curve, options))
     except (FitError, ArithmeticError, OSError) as error:

@@ -68,12 +68,12 @@ class Comparison:
     def beside(self, curve, p, rows):
         """Returns the computed values at the measured rows, NaN beyond the end of the computed path."""
         x = self.along.computed(curve)
-        kept = np.concatenate([[True], np.diff(np.maximum.accumulate(x)) > 0]) if len(x) else []
+        selected = np.concatenate([[True], np.diff(np.maximum.accumulate(x)) > 0]) if len(x) else []
         if len(x) == 0 or np.any(np.diff(x) < -1e-12 * np.max(np.abs(x))):
             return np.full(np.sum(rows), np.nan)
         slack = 1e-9 * np.max(np.abs(x))
         wanted = self.along.values[rows]
-        values = np.interp(wanted, x[kept], p.computed(curve)[kept])
+        values = np.interp(wanted, x[selected], p.computed(curve)[selected])
         return np.where((wanted < x[0] - slack) | (wanted > x[-1] + slack), np.nan, values)
 
     def differences(self, curve, rows=None):
@@ -86,8 +86,8 @@ class Comparison:
     def weigh_by_scatter(self, curve):
         """Weights each column by its scatter about the curve, with a minimum of 0.001 of its range."""
         for k, (p, d) in enumerate(zip(self.matched, self.differences(curve))):
-            least = 1e-3 * (np.ptp(p.values[self.rows[k]]) or 1)
-            self.weights[k] = 1 / max(float(np.sqrt(np.mean(d**2))), least)
+            minimum = 1e-3 * (np.ptp(p.values[self.rows[k]]) or 1)
+            self.weights[k] = 1 / max(float(np.sqrt(np.mean(d**2))), minimum)
 
     def why_not(self, curve):
         """Returns the reason why a curve cannot be compared."""

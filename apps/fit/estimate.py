@@ -97,7 +97,7 @@ def covariance(J, residuals):
     return C * variance, undetermined
 
 
-def fit(model, parameters, most=60):
+def fit(model, parameters, maximum=60):
     """Returns the Estimate with the least sum of squares of the residuals model([values]).
 
     The confidence intervals are those of the linearised model, s^2 (J^T J)^-1 with Student's t, transformed back from
@@ -108,7 +108,7 @@ def fit(model, parameters, most=60):
     room = [1e-9 * max(1.0, abs(s)) for s in x0]
     x0 = np.clip(x0, np.add(bounds[0], room), np.subtract(bounds[1], room))
     found = optimize.least_squares(r, x0, jac=r.jacobian, bounds=bounds, x_scale="jac", xtol=1e-12, ftol=1e-12,
-                                   gtol=1e-14, max_nfev=most)
+                                   gtol=1e-14, max_nfev=maximum)
     at_bound = np.array([min(abs(s - low), abs(high - s)) <= AT_BOUND * max(1, abs(s))
                          for s, low, high in zip(found.x, *bounds)])
     free = ~at_bound

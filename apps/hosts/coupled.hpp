@@ -14,7 +14,7 @@ namespace hosts {
 // Rock, and the fluid's mobility and storage in it. The box is compressed by 2 MPa, with an additional shear traction
 // of 0.4 MPa on "north".
 constexpr Real E = 10e9, nu = 0.25, alpha = 0.8, k_mu = 1e-12, storage = 2e-10;  // Pa, -, -, m^2/(Pa s), 1/Pa
-constexpr Real viscosity = 1e-3, aperture = 2e-4, least = 1e-5, injection = 1e-6, dt = 10;  // Pa s, m, m, m/s^2, s
+constexpr Real viscosity = 1e-3, aperture = 2e-4, minimum = 1e-5, injection = 1e-6, dt = 10;  // Pa s, m, m, m/s^2, s
 
 /// Returns a grid of a box of 1 m with a fracture that ends inside.
 inline Grid grid(int dim, int cells) {
@@ -29,7 +29,7 @@ inline Grid grid(int dim, int cells) {
 
 inline Fluid fluid() {
   const Real M = E * (1 - nu) / ((1 + nu) * (1 - 2 * nu));  // lambda + 2G
-  return {k_mu, storage, alpha * alpha / (4 * M), viscosity, aperture, least, injection};
+  return {k_mu, storage, alpha * alpha / (4 * M), viscosity, aperture, minimum, injection};
 }
 
 /// Returns the scene of a block on rollers, without a fluid.
@@ -56,7 +56,7 @@ inline model::Scene block(int dim, int cells) {
   joint.friction_coefficient = 0.3;
   joint.tangential_stiffness = 20e9;
   joint.initial_aperture = aperture;
-  joint.residual_aperture = least;
+  joint.residual_aperture = minimum;
   scene.bulk.material = "rock";
   scene.fractures["fracture"].material = "joint";
   const std::vector<std::string> held = {"west", "south", "bottom"}, pressed = {"east", "north", "top"};

@@ -43,7 +43,7 @@ bool agree(const char* what, Real found, Real by_hand, bool speaks) {
 int run(RCP<const Comm> comm) {
   const bool speaks = comm->getRank() == 0;
   model::Scene scene = model::read_scene(*comm, "../../xml/slopes/plane_2d.xml");
-  scene.time.stepping.tethers = false;  // a sliding block is no valid state here
+  scene.time.stepping.proximal_continuation = false;  // a sliding block is no valid state here
   model::Model model(scene, comm);
   for (const auto& warning : model.warnings())  // collective
     if (speaks) std::cerr << warning << '\n';

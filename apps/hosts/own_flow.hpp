@@ -66,10 +66,10 @@ struct FaceFlow {
   using Rows = assembly::Slots<assembly::Slot<1 + n, 1>>;
   View<Real**> form;
   View<Real*> area;
-  Real aperture, least, viscosity, injection, rate = 0;  // m, m, Pa s, m/s, 1/s
+  Real aperture, minimum, viscosity, injection, rate = 0;  // m, m, Pa s, m/s, 1/s
   View<Real**> old = {};
 
-  KOKKOS_INLINE_FUNCTION Real hydraulic(Real b) const { return aperture + b > least ? aperture + b : least; }
+  KOKKOS_INLINE_FUNCTION Real hydraulic(Real b) const { return aperture + b > minimum ? aperture + b : minimum; }
 
   KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[2 + n], Real (&r)[1 + n]) const {
     const bool owned = face < static_cast<int>(old.extent(0));
@@ -83,7 +83,8 @@ struct FaceFlow {
   KOKKOS_INLINE_FUNCTION void jacobian(int face, const Real (&x)[2 + n], Real (&J)[1 + n][2 + n]) const {
     for (auto& row : J)
       for (Real& value : row) value = 0;
-    const Real a = hydraulic(x[1 + n]), T = a * a * a / (12 * viscosity), dT = a > least ? a * a / (4 * viscosity) : 0;
+    const Real a = hydraulic(x[1 + n]), T = a * a * a / (12 * viscosity),
+               dT = a > minimum ? a * a / (4 * viscosity) : 0;
     J[0][1 + n] = area(face) * rate;
     for (int k = 0; k < n; ++k) {
       J[0][0] += T * form(face, k);
@@ -201,7 +202,7 @@ OwnFlow<shape>::OwnFlow(const mesh::Mesh& mesh, const Fluid& fluid) {
   Kokkos::deep_copy(volume, volume_host);
   Kokkos::deep_copy(area, area_host);
   cell_ = {T, volume, fluid.storage};
-  face_ = {form, area, fluid.aperture, fluid.least, fluid.viscosity, fluid.injection};
+  face_ = {form, area, fluid.aperture, fluid.minimum, fluid.viscosity, fluid.injection};
 }
 
 inline std::unique_ptr<assembly::Module> make_own_flow(const mesh::Mesh& mesh, const Fluid& fluid) {

@@ -31,15 +31,15 @@ struct Grid {
 };
 
 struct Fluid {
-  double mobility;         ///< rock, k/mu, m^2/(Pa s)
-  double storage;          ///< rock at constant strain, 1/M, 1/Pa
-  double stabilisation;    ///< alpha^2/(4 (lambda + 2G)), 1/Pa; times h^2: mobility of dp/dt, see docs/model/flow.md
-  double viscosity;        ///< Pa s
-  double aperture, least;  ///< fracture: initial aperture, smallest hydraulic aperture, m
-  double injection;        ///< rate of injection into the fracture, proportional to time, m/s^2
+  double mobility;           ///< rock, k/mu, m^2/(Pa s)
+  double storage;            ///< rock at constant strain, 1/M, 1/Pa
+  double stabilisation;      ///< alpha^2/(4 (lambda + 2G)), 1/Pa; times h^2: mobility of dp/dt, see docs/model/flow.md
+  double viscosity;          ///< Pa s
+  double aperture, minimum;  ///< fracture: initial aperture, smallest hydraulic aperture, m
+  double injection;          ///< rate of injection into the fracture, proportional to time, m/s^2
 
   double transmissibility(double widening) const {
-    return std::pow(std::max(least, aperture + widening), 3) / (12 * viscosity);
+    return std::pow(std::max(minimum, aperture + widening), 3) / (12 * viscosity);
   }
 };
 

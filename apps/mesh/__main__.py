@@ -13,7 +13,7 @@ from pathlib import Path
 from progress import doing
 from shapes import NetworkError
 
-MOST_DRAWN = 0.2  # maximum share of random fractures drawn again; a larger share would change the statistics
+MAX_DRAWN = 0.2  # maximum share of random fractures drawn again; a larger share would change the statistics
 
 
 def arguments(words):
@@ -89,7 +89,7 @@ def made_of(text, network):
         except NetworkError as error:
             drawn = {name: k for k, name in enumerate(network.at_random)}
             last = {max((name for name in names if name in drawn), key=drawn.get, default=None) for names in error.features}
-            if not last or None in last or sum(again.values()) + len(last) > max(1, MOST_DRAWN * len(drawn)):
+            if not last or None in last or sum(again.values()) + len(last) > max(1, MAX_DRAWN * len(drawn)):
                 raise
         again.update({name: again.get(name, 0) + 1 for name in last})
         network = Network(text, again)
@@ -145,7 +145,7 @@ def in_words(error, scene):
 def main(words=None):
     options = arguments(words)
     try:
-        told, warnings = make(options)
+        reported, warnings = make(options)
     except Exception as error:  # includes exceptions of shapely and gmsh
         if isinstance(error, OSError):
             error = NetworkError(f"{error.filename or options.output}: {error.strerror or error}")
@@ -159,7 +159,7 @@ def main(words=None):
     for line in warnings:
         print(f"warning: {options.scene}: {line}", file=sys.stderr)
     if not options.quiet:
-        print(f"{options.output}: {told or 'is up to date'}")
+        print(f"{options.output}: {reported or 'is up to date'}")
     return 0
 
 

@@ -4,14 +4,14 @@ from collections import defaultdict
 import numpy as np
 from shapes import NetworkError
 
-MOST_PAIRS = 5 * 10**6  # of edges that may be close; some gigabytes
-MOST_CROSSINGS = 2 * 10**5  # some minutes
+MAX_PAIRS = 5 * 10**6  # of edges that may be close; some gigabytes
+MAX_CROSSINGS = 2 * 10**5  # some minutes
 
 
 def near_pairs(low, high, reach):
     """Returns the pairs i < j, as two arrays, of boxes closer than `reach` in every direction.
 
-    Error beyond MOST_PAIRS."""
+    Error beyond MAX_PAIRS."""
     order = np.argsort(low[:, 0], kind="stable")
     low, high = low[order] - 0.5 * reach, high[order] + 0.5 * reach
     last = np.searchsorted(low[:, 0], high[:, 0], side="right")
@@ -22,8 +22,8 @@ def near_pairs(low, high, reach):
         first.append(np.full(len(j), i))
         second.append(j)
         n += len(j)
-        if n > MOST_PAIRS:
-            raise NetworkError(f"the network is too dense: more than {MOST_PAIRS:g} pairs of its {len(low)} edges may be closer than "
+        if n > MAX_PAIRS:
+            raise NetworkError(f"the network is too dense: more than {MAX_PAIRS:g} pairs of its {len(low)} edges may be closer than "
                                f"{reach:.3g} m; remove fractures, or choose smaller cells (\"relative size\", \"size\")")
     first, second = (order[np.concatenate(k).astype(int)] if k else np.array([], int) for k in (first, second))
     return np.minimum(first, second), np.maximum(first, second)
@@ -107,8 +107,8 @@ def cut(segments, parents, tolerance):
                     joined.append((gap[k], parents[one[k]], parents[other[k]]))
     s, t, gap = closest(segments[i], segments[j])
     cross = np.flatnonzero((gap <= tolerance) & (s > 0) & (s < 1) & (t > 0) & (t < 1))
-    if len(cross) > MOST_CROSSINGS:
-        raise NetworkError(f"the network is too dense: fractures cross in {len(cross)} points, at most {MOST_CROSSINGS} are allowed")
+    if len(cross) > MAX_CROSSINGS:
+        raise NetworkError(f"the network is too dense: fractures cross in {len(cross)} points, at most {MAX_CROSSINGS} are allowed")
     n = len(points[0])
     for k in cross:
         a, b = segments[i[k]], segments[j[k]]

@@ -5,7 +5,7 @@ from domain import in_polygon
 from shapes import Errors, at
 
 NEAR = 10  # in minimum distances: closer fractures that do not meet give a warning
-MOST_NEAR = 5  # warnings about such pairs
+MAX_NEAR = 5  # warnings about such pairs
 
 
 def names(plan, one, other):
@@ -73,7 +73,7 @@ def points_within(plan, reach):
         for hole in surface.shape.interiors:
             over &= ~in_polygon(flat, np.array(hole.coords[:-1]))
         for p in near[over]:
-            if k not in at[p] | plan.loose.get(int(p), set()):
+            if k not in at[p] | plan.touching.get(int(p), set()):
                 yield {k}, at[p], abs(surface.plane.height(points[p])), points[p]
 
 
@@ -98,7 +98,7 @@ def near_fractures(plan):
             first.setdefault(frozenset(pair), f"{both(pair)} are {gap:.3g} m apart at {at_point(plan, where)} without meeting; "
                              "if they should meet, join them by a larger \"tolerance\"")
     lines = list(first.values())
-    return lines[:MOST_NEAR] + ([f"{len(lines) - MOST_NEAR} more pairs of fractures are close"] if len(lines) > MOST_NEAR else [])
+    return lines[:MAX_NEAR] + ([f"{len(lines) - MAX_NEAR} more pairs of fractures are close"] if len(lines) > MAX_NEAR else [])
 
 
 def folds(plan):

@@ -10,11 +10,11 @@ from domain import Body, rows
 from fab import read_fab
 from generator import at_random
 from parts import joined_parts
-from shapes import MOST, Errors, Feature, NetworkError, at, ellipse, refuse
+from shapes import MAXIMUM, Errors, Feature, NetworkError, at, ellipse, refuse
 from tables import Table, has_points, read_table
 
-MOST_FRACTURES = 10**5
-MOST_DIAGONALS = 1e6  # largest distance of a point from the centre of the domain, in diagonals
+MAX_FRACTURES = 10**5
+MAX_DIAGONALS = 1e6  # largest distance of a point from the centre of the domain, in diagonals
 
 READ = {"int": int, "double": float, "bool": lambda text: text == "true", "string": str}
 
@@ -127,19 +127,19 @@ class Network:
                 rows_read = self.tables[section, name].fractures
                 found += [Feature(kind, name, f"{kind} {row.title}", row.points, row.name or f"{name} {row.number}",
                                   content["file"], printable(row.properties)) for row in rows_read]
-            for of, least in (("lines", 2), ("polygons", 3)):
+            for of, minimum in (("lines", 2), ("polygons", 3)):
                 for one, points in content.get(of, {}).items():
                     if (of == "lines") != (self.dim == 2):
                         raise NetworkError(f"{path} > {of} > {one}: the domain has dimension {self.dim}; give {'lines' if n == 2 else 'polygons'}")
-                    found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"', rows(points["points"], n, f"{path} > {of} > {one}", least),
+                    found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"', rows(points["points"], n, f"{path} > {of} > {one}", minimum),
                                          f"{name} {one}", of))
             for one, e in content.get("ellipses", {}).items():
                 found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"',
                                      ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"]),
                                      f"{name} {one}", "ellipses"))
             number = len(found) + content.get("random", {}).get("number", 0)
-            if number > MOST_FRACTURES:
-                raise NetworkError(f"{path}: increases the network to {number} {kind}s, at most {MOST_FRACTURES} are allowed")
+            if number > MAX_FRACTURES:
+                raise NetworkError(f"{path}: increases the network to {number} {kind}s, at most {MAX_FRACTURES} are allowed")
             if "random" in content:
                 names = [f'{kind} {k + 1} at random of "{name}"' for k in range(content["random"]["number"])]
                 again = {k: self.again[one] for k, one in enumerate(names) if one in self.again}
@@ -200,12 +200,12 @@ class Network:
 
     def check_reach(self):
         """Rejects coordinates far from the domain, which would suffer from round-off."""
-        centre, most, errors = 0.5 * (self.domain.low + self.domain.high), MOST_DIAGONALS * self.domain.size, Errors()
+        centre, maximum, errors = 0.5 * (self.domain.low + self.domain.high), MAX_DIAGONALS * self.domain.size, Errors()
         for feature in self.fractures + self.constraints:
             x = feature.points.ravel()[abs(feature.points).argmax()]
             with errors.of_one():
-                if abs(x) > MOST or abs(feature.points - centre).max() > most:
-                    refuse(feature, f"has the coordinate {x:g} m, more than {MOST_DIAGONALS:g} diagonals of the domain "
+                if abs(x) > MAXIMUM or abs(feature.points - centre).max() > maximum:
+                    refuse(feature, f"has the coordinate {x:g} m, more than {MAX_DIAGONALS:g} diagonals of the domain "
                                     "away")
         errors.throw(self.files)
 
@@ -219,7 +219,7 @@ class Network:
         self.minimum_angle = e["minimum angle"]
         self.size = e.get("size", diagonal / 10)
         self.relative_size, self.growth = e["relative size"], e["growth"]
-        self.most_cells = e["most cells"]
+        self.maximum_cells = e["maximum cells"]
         for entry in ("size", *(f"size at {where}" for where in ("tips", "intersections", "boundary"))):
             if e.get(entry, np.inf) < 1e-7 * diagonal:
                 raise NetworkError(f"{self.place(entry)}: is {e[entry]:g} m, must be at least 1e-7 of the domain's diagonal, {1e-7 * diagonal:.3g} m")

@@ -2,7 +2,7 @@
 import numpy as np
 from shapely.geometry import LineString, Polygon
 from shapely.ops import polygonize, unary_union
-from shapes import MOST, Feature, NetworkError, check_polygon, refuse
+from shapes import MAXIMUM, Feature, NetworkError, check_polygon, refuse
 from surfaces import Surface, are_level, chords, heights, lines_of, overlap, polygons_of
 
 BOX_SIDES = ["west", "east", "south", "north", "bottom", "top"]
@@ -18,10 +18,10 @@ def box_sides(low, high):
     return BOX_SIDES, [x[list(face)] for face in faces]
 
 
-def rows(numbers, n, place, least):
-    """Returns numbers as an array of points with n coordinates. Error for fewer than `least` points."""
-    if len(numbers) % n or len(numbers) < least * n:
-        raise NetworkError(f"{place}: has {len(numbers)} numbers, needs {n} for each of at least {least} points")
+def rows(numbers, n, place, minimum):
+    """Returns numbers as an array of points with n coordinates. Error for fewer than `minimum` points."""
+    if len(numbers) % n or len(numbers) < minimum * n:
+        raise NetworkError(f"{place}: has {len(numbers)} numbers, needs {n} for each of at least {minimum} points")
     return np.array(numbers, float).reshape(-1, n)
 
 
@@ -55,8 +55,8 @@ class Body:
         points = np.concatenate(list(sides)) if self.dim == 3 else sides
         self.low, self.high = points.min(axis=0), points.max(axis=0)
         largest = points.ravel()[np.abs(points).argmax()]
-        if abs(largest) > MOST:
-            raise NetworkError(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are allowed")
+        if abs(largest) > MAXIMUM:
+            raise NetworkError(f"{place}: has the coordinate {largest:g} m; at most {MAXIMUM:g} m are allowed")
         self.size = np.linalg.norm(self.high - self.low)
         if self.dim == 2:
             self.corners, self.shape = sides, Polygon(sides)
@@ -82,10 +82,10 @@ class Body:
         self.volume = 0.0
         for s in self.surfaces:
             x = s.plane.outside(s.shape.representative_point().coords[0])
-            is_out = not self.holds((x + 1e-6 * self.size * s.plane.normal)[None])[0]
+            is_out = not self.contains((x + 1e-6 * self.size * s.plane.normal)[None])[0]
             self.volume += (1 if is_out else -1) * s.shape.area * ((x - self.low) @ s.plane.normal) / 3
 
-    def holds(self, points):
+    def contains(self, points):
         """Returns whether points (n, dim) are inside."""
         if self.dim == 2:
             return in_polygon(points, self.corners)
@@ -114,7 +114,7 @@ class Body:
             for (_, a), (_, b) in chords(s, heights(s, plane, tolerance), along / np.linalg.norm(along), tolerance):
                 if np.linalg.norm(b - a) > tolerance:
                     lines.append(LineString(np.round(plane.inside(np.array([a, b])), 12 - int(np.log10(self.size)))))
-        pieces = [p for p in polygonize(lines_of(unary_union(lines))) if self.holds(plane.outside([p.representative_point().coords[0]]))[0]]
+        pieces = [p for p in polygonize(lines_of(unary_union(lines))) if self.contains(plane.outside([p.representative_point().coords[0]]))[0]]
         return unary_union(pieces)
 
     def clip_polygon(self, whole, tolerance):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from shapes import MOST, Errors, NetworkError, Unusable
+from shapes import MAXIMUM, Errors, NetworkError, Unusable
 
 DRIVERS = {".geojson": "GeoJSON", ".json": "GeoJSON", ".shp": "ESRI Shapefile", ".gpkg": "GPKG", ".dxf": "DXF"}
 COMPANIONS = (".shx", ".dbf", ".prj", ".cpg")  # further files of a shapefile
@@ -200,9 +200,9 @@ def corners(part, is_polygon, dim, place, errors, unused):
     if not np.isfinite(points).all():
         errors.append(f"{place}: has coordinates that are not finite")
         return None
-    if abs(points).max(initial=0) > MOST:
+    if abs(points).max(initial=0) > MAXIMUM:
         largest = points.ravel()[abs(points).argmax()]
-        errors.append(f"{place}: has the coordinate {largest:g} m; at most {MOST:g} m are allowed")
+        errors.append(f"{place}: has the coordinate {largest:g} m; at most {MAXIMUM:g} m are allowed")
         return None
     if dim == 2:
         points = points[:, :2]

@@ -37,7 +37,7 @@ def centres(random, domain, n):
     found = np.empty((0, domain.dim))
     while len(found) < n:
         points = domain.low + random.random((n, domain.dim)) * (domain.high - domain.low)
-        found = np.concatenate([found, points[domain.holds(points)]])
+        found = np.concatenate([found, points[domain.contains(points)]])
     return found[:n]
 
 

@@ -142,8 +142,8 @@ def set_sizes(sizes, origin):
         fields.append(threshold)
     gmsh.model.geo.synchronize()
     if fields:
-        least = field.add("Min")
-        field.setNumbers(least, "FieldsList", fields)
-        field.setAsBackgroundMesh(least)
+        minimum = field.add("Min")
+        field.setNumbers(minimum, "FieldsList", fields)
+        field.setAsBackgroundMesh(minimum)
     for option, value in (("MeshSizeMax", network.size), ("MeshSizeExtendFromBoundary", 0), ("MeshSizeFromPoints", 0)):
         gmsh.option.setNumber(f"Mesh.{option}", value)

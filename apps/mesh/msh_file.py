@@ -65,7 +65,7 @@ def groups_of(mesh, plan):
     centres, region = mesh.points[mesh.cells].mean(axis=1)[:, :dim], np.zeros(len(mesh.cells), int)
     bodies = plan.network.regions
     for k, body in enumerate(bodies):
-        region[body.holds(centres)] = k + 1
+        region[body.contains(centres)] = k + 1
     names = ["bulk"] + [body.place.split(" > ")[-1] for body in bodies]
     Errors(f"{body.place}: has no cell; it lies outside of the domain, or in regions that come after it"
            for k, body in enumerate(bodies, 1) if not (region == k).any()).throw()

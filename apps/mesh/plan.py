@@ -35,13 +35,13 @@ class Plan:
         graph = arrange(segments, parents, self.tolerance)
         self.points, self.edges = graph.points, graph.edges
         self.graph = graph
-        self.tell_joined(graph)
+        self.report_joined(graph)
         if self.dim == 2:
             self.straighten_sides()
             self.part_overlaps()
-        self.loose = {}  # {point where features touch: indices of owners}
+        self.touching = {}  # {point where features touch: indices of owners}
         for point, of in touches:
-            self.loose.setdefault(int(np.argmin(np.linalg.norm(self.points - point, axis=1))), set()).update(of)
+            self.touching.setdefault(int(np.argmin(np.linalg.norm(self.points - point, axis=1))), set()).update(of)
 
     def is_fracture(self, owner):
         return self.owners[owner].kind == "fracture"
@@ -50,13 +50,13 @@ class Plan:
         """Returns the fractures among owners, each once, in their order."""
         return list({id(self.owners[k]): self.owners[k] for k in sorted(owners) if self.is_fracture(k)}.values())
 
-    def tell_joined(self, graph):
-        told = set()
+    def report_joined(self, graph):
+        reported = set()
         for gap, one, other in sorted(graph.joined, key=lambda join: -join[0]):
             names = {self.owners[k].name for k in one} ^ {self.owners[k].name for k in other}
             names = tuple(sorted(names or {self.owners[k].name for k in one}))
-            if names not in told:
-                told.add(names)
+            if names not in reported:
+                reported.add(names)
                 self.repairs.append(f"closed a gap of {gap:.3g} m: " + " and ".join(names))
 
     def straighten_sides(self):
@@ -75,14 +75,14 @@ class Plan:
 
     def part_overlaps(self):
         """Assigns an edge of several features to the first, if joining points at an angle made them overlap."""
-        least = max(self.network.minimum_angle, 0.01)
+        minimum = max(self.network.minimum_angle, 0.01)
         for edge, of in self.edges.items():
             owners = [k for k in sorted(of) if self.owners[k].kind in ("fracture", "boundary")]
             middle = 0.5 * (self.points[edge[0]] + self.points[edge[1]])[:2]
             along = [direction(self.owners[k].points, middle) for k in owners] if len(owners) > 1 else []
             for k, other in zip(owners[1:], along[1:]):
                 angle = np.degrees(np.arcsin(min(1, abs(along[0][0] * other[1] - along[0][1] * other[0]))))
-                if angle >= least and self.is_fracture(k):
+                if angle >= minimum and self.is_fracture(k):
                     self.edges[edge] = self.edges[edge] - {k}
                     length = np.linalg.norm(self.points[edge[0]] - self.points[edge[1]])
                     self.repairs.append(f"joined along {length:.3g} m: {self.owners[owners[0]].name} and {self.owners[k].name}")
@@ -141,12 +141,12 @@ class Plan:
 
         Error for a fracture or constraint without such a part."""
         length = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in parts]
-        least = {"fracture": self.network.minimum_distance, "constraint": self.tolerance}.get(line.kind, 0)
+        minimum = {"fracture": self.network.minimum_distance, "constraint": self.tolerance}.get(line.kind, 0)
         whole = np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum()
-        if whole < least:
-            unusable(line, f"is {whole:.3g} m long, shorter than the \"minimum distance\", {least:.3g} m; reduce it, or "
+        if whole < minimum:
+            unusable(line, f"is {whole:.3g} m long, shorter than the \"minimum distance\", {minimum:.3g} m; reduce it, or "
                            "remove the line")
-        if max(length, default=0) < least:
+        if max(length, default=0) < minimum:
             unusable(line, "lies outside of the domain")
         for x in length:
             if x < self.network.minimum_distance:
@@ -210,11 +210,11 @@ class Plan:
         """Returns surfaces with corners moved onto other surfaces within the tolerance."""
         found = []
         for surface in surfaces:
-            moved, told = moved_onto(surface, others, self.network.tolerance)
-            for distance, other in told:
+            moved, reported = moved_onto(surface, others, self.network.tolerance)
+            for distance, other in reported:
                 if distance > 1e-9 * self.network.domain.size:
                     self.repairs.append(f"closed a gap of {distance:.3g} m: {surface.feature.name} and {other.feature.name}")
-            found.append(moved if told else surface)
+            found.append(moved if reported else surface)
         return found
 
     def meet(self, one, other):
@@ -241,15 +241,15 @@ class Plan:
     def faces(self):
         """Returns all faces, cut along edges. Checks that the faces cover each surface."""
         if self.dim == 2:
-            return faces_of(0, self.points[:, :2], list(self.edges), self.loose, self.network.domain.shape, self.tolerance)
+            return faces_of(0, self.points[:, :2], list(self.edges), self.touching, self.network.domain.shape, self.tolerance)
         edges = [[] for _ in self.surfaces]
         for edge, of in self.edges.items():
             for k in of:
                 edges[k].append(edge)
         found = []
         for k, surface in enumerate(self.surfaces):
-            loose = [p for p, of in self.loose.items() if k in of]
-            faces = faces_of(k, surface.plane.inside(self.points), edges[k], loose, surface.shape, self.tolerance)
+            touching = [p for p, of in self.touching.items() if k in of]
+            faces = faces_of(k, surface.plane.inside(self.points), edges[k], touching, surface.shape, self.tolerance)
             area = sum(face.shape.area for face in faces)
             if abs(area - surface.shape.area) > 4 * self.tolerance * surface.shape.length:
                 refuse(surface.feature, f"its faces have {area:.9g} m^2 of {surface.shape.area:.9g} m^2: its intersections could not be resolved; "
@@ -279,7 +279,7 @@ def check_same(fractures, tolerance):
     errors.throw()
 
 
-def faces_of(owner, flat, edges, loose, shape, tolerance):
+def faces_of(owner, flat, edges, touching, shape, tolerance):
     """Returns the faces of a polygon `shape`, cut along edges.
 
     `flat` contains all points in coordinates of its plane."""
@@ -294,7 +294,7 @@ def faces_of(owner, flat, edges, loose, shape, tolerance):
         used.update((min(a, b), max(a, b)) for ring in rings for a, b in zip(ring, ring[1:] + ring[:1]))
     inside = [(edge, 0.5 * (flat[edge[0]] + flat[edge[1]])) for edge in edges if edge not in used]
     on_edges = {k for edge in edges for k in edge}
-    for what, x in inside + [(k, flat[k]) for k in loose if k not in on_edges]:
+    for what, x in inside + [(k, flat[k]) for k in touching if k not in on_edges]:
         home = next((face for face in faces if face.shape.contains(Point(x))), None)
         if home:
             (home.edges if isinstance(what, tuple) else home.points).append(what)

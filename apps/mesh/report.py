@@ -78,7 +78,7 @@ def as_text(report):
     what = "length" if report["dimension"] == 2 else "area"
     g = report["gamma"]
     lines = [f"{report['cells']} cells, {report['nodes']} nodes, {report['fracture faces']} fracture faces; "
-             f"gamma of cells: least {g['min']:.3g}, median {g['median']:.3g}"]
+             f"gamma of cells: min {g['min']:.3g}, median {g['median']:.3g}"]
     for name, s in report["sets"].items():
         lines.append(f"  {name}: {s['fractures']} fractures, {what} {s[what]:.6g}, {s['faces']} faces; edges: median {s['median edge']:.3g} m, "
                      f"shortest {s['shortest edge']:.3g} m, target {s['median target size']:.3g} m, smaller near tips and in gaps")

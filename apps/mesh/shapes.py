@@ -7,7 +7,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.validation import explain_validity
 
 
-MOST = 1e12  # largest coordinate, m
+MAXIMUM = 1e12  # largest coordinate, m
 
 
 class NetworkError(Exception):
@@ -31,7 +31,7 @@ HINT = ("\"unusable fractures\" = \"left out\" in the section network omits and 
 class Errors:
     """Collects errors, one line each, and raises them together."""
 
-    MOST = 20
+    MAXIMUM = 20
 
     def __init__(self, lines=(), features=()):
         self.lines, self.features = list(lines), list(features)
@@ -48,8 +48,8 @@ class Errors:
 
     def throw(self, files=()):
         if self.lines:
-            more = [f"and {len(self.lines) - self.MOST} more"] if len(self.lines) > self.MOST else []
-            raise NetworkError("\n".join(self.lines[:self.MOST] + more), [*files, "and "], self.features)
+            more = [f"and {len(self.lines) - self.MAXIMUM} more"] if len(self.lines) > self.MAXIMUM else []
+            raise NetworkError("\n".join(self.lines[:self.MAXIMUM] + more), [*files, "and "], self.features)
 
 
 @dataclass
@@ -81,14 +81,14 @@ def unusable(feature, what):
 
 def thinned(points, tolerance):
     """Returns a polyline without points within the tolerance of the previous one. The ends stay."""
-    kept = [0]
+    selected = [0]
     for k in range(1, len(points)):
-        if np.linalg.norm(points[k] - points[kept[-1]]) > tolerance:
-            kept.append(k)
+        if np.linalg.norm(points[k] - points[selected[-1]]) > tolerance:
+            selected.append(k)
     last = len(points) - 1
-    if kept[-1] != last:
-        kept[-1 if len(kept) > 1 else len(kept):] = [last]
-    return points[kept]
+    if selected[-1] != last:
+        selected[-1 if len(selected) > 1 else len(selected):] = [last]
+    return points[selected]
 
 
 class Plane:

@@ -11,7 +11,7 @@ from shapes import NetworkError, diameter
 
 TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # default size at tips / size at the fracture
 CELL = {2: np.sqrt(3) / 4, 3: 1 / (6 * np.sqrt(2))}  # area or volume of a regular cell with edges of length 1
-LEAST_RATIO = {2: 1 / 20, 3: 1 / 8}  # smallest size in narrow gaps / size at the fractures
+MIN_RATIO = {2: 1 / 20, 3: 1 / 8}  # smallest size in narrow gaps / size at the fractures
 
 
 class Sizes:
@@ -77,11 +77,11 @@ class Sizes:
 
     def check_number(self):
         """Raises an error if the expected number of cells exceeds the limit."""
-        cells, most = self.expected_cells(), self.network.most_cells
+        cells, maximum = self.expected_cells(), self.network.maximum_cells
         n, entry = sum(cells.values()), max(cells, key=cells.get)
-        if n > most:
+        if n > maximum:
             raise NetworkError(f"Sprekk > Mesh file > network: sizes require about {n:.2g} cells, {cells[entry] / n:.0%} of them due to "
-                               f"\"{entry}\"; \"most cells\" is {most:g}")
+                               f"\"{entry}\"; \"maximum cells\" is {maximum:g}")
 
     def add(self, points, sizes):
         self.found[0].append(np.atleast_2d(points))
@@ -138,7 +138,7 @@ class Sizes:
         i, j = i[apart], j[apart]
         wanted = np.minimum(self.at_edge[i], self.at_edge[j])
         _, _, gap = closest(self.segments[i], self.segments[j])
-        least = LEAST_RATIO[self.plan.dim]
+        minimum = MIN_RATIO[self.plan.dim]
         for k in np.flatnonzero(gap < wanted):
             for one, other in ((i[k], j[k]), (j[k], i[k])):
                 begin, end = self.segments[one]
@@ -147,11 +147,11 @@ class Sizes:
                 _, distance = on_segment(x, *(np.broadcast_to(y, x.shape) for y in self.segments[other]))
                 near = distance < wanted[k]
                 if near.any():
-                    self.add(x[near], np.maximum(distance[near], least * wanted[k]))
+                    self.add(x[near], np.maximum(distance[near], minimum * wanted[k]))
         if self.plan.dim == 3:
-            self.take_gaps_of_surfaces(least)
+            self.take_gaps_of_surfaces(minimum)
 
-    def take_gaps_of_surfaces(self, least):
+    def take_gaps_of_surfaces(self, minimum):
         at = self.plan.graph.parents_at()
         for k, surface in enumerate(self.plan.surfaces):
             size = min(self.of_owner[k], self.network.size)
@@ -160,10 +160,10 @@ class Sizes:
             height = surface.plane.height(points[near])
             flat = surface.plane.inside(points[near])
             over = (abs(height) < size) & in_polygon(flat, np.array(surface.shape.exterior.coords[:-1]))
-            over &= np.array([k not in at[p] | self.plan.loose.get(int(p), set()) for p in near], bool)
+            over &= np.array([k not in at[p] | self.plan.touching.get(int(p), set()) for p in near], bool)
             if over.any():
                 for x in (points[near[over]], surface.plane.outside(flat[over])):
-                    self.add(x, np.maximum(abs(height[over]), least * size))
+                    self.add(x, np.maximum(abs(height[over]), minimum * size))
 
 
 def special(plan):

@@ -30,7 +30,7 @@ class Surface:
         """Returns the segments (n, 2, 3) of all rings."""
         return np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in self.rings])
 
-    def holds(self, point, tolerance):
+    def contains(self, point, tolerance):
         return self.shape.distance(Point(self.plane.inside(point))) <= tolerance
 
 
@@ -39,13 +39,13 @@ def moved_onto(surface, others, tolerance):
 
     Returns the new surface, and [(distance in m, other surface)] of the movements. Corners that would move by more
     than 4 tolerances stay."""
-    rings, told = [ring.copy() for ring in surface.rings], []
+    rings, reported = [ring.copy() for ring in surface.rings], []
     close = [o for o in others if o is not surface and np.all(o.low <= surface.high + tolerance) and np.all(o.high >= surface.low - tolerance)]
     slopes = [surface.plane.axes @ o.plane.normal for o in close]  # gradients of the heights
     for ring in rings:
         for k, corner in enumerate(ring):
             near = [(o.plane.height(corner), slope, o) for o, slope in zip(close, slopes)
-                    if abs(o.plane.height(corner)) <= tolerance < 4 * tolerance * np.linalg.norm(slope) and o.holds(corner, tolerance)]
+                    if abs(o.plane.height(corner)) <= tolerance < 4 * tolerance * np.linalg.norm(slope) and o.contains(corner, tolerance)]
             near = near[:2]  # two planes determine a corner
             height = np.array([h for h, _, _ in near])
             if not near or abs(height).max() < 1e-12 * np.linalg.norm(surface.high - surface.low):
@@ -53,8 +53,8 @@ def moved_onto(surface, others, tolerance):
             step = -np.linalg.lstsq(np.array([s for _, s, _ in near]), height, rcond=1e-3)[0]
             if np.linalg.norm(step) <= 4 * tolerance:
                 ring[k] = corner + step @ surface.plane.axes
-                told += [(abs(h), o) for h, _, o in near]
-    return Surface(surface.feature, surface.plane, rings), told
+                reported += [(abs(h), o) for h, _, o in near]
+    return Surface(surface.feature, surface.plane, rings), reported
 
 
 def heights(surface, plane, tolerance):
@@ -79,7 +79,7 @@ def chords(surface, height, along, tolerance):
     hits = sorted(((float(along @ x), x) for x in hits), key=lambda hit: hit[0])
     found = []
     for here, after in zip(hits, hits[1:]):
-        if surface.holds(0.5 * (here[1] + after[1]), tolerance):
+        if surface.contains(0.5 * (here[1] + after[1]), tolerance):
             found.append((here, after))
         elif not found or found[-1][1] is not here:
             found.append((here, here))

@@ -8,9 +8,9 @@ import stat
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from shapes import MOST, Errors, NetworkError, ellipse
+from shapes import MAXIMUM, Errors, NetworkError, ellipse
 
-MOST_CHARACTERS = 2 * 10**8  # in a file; some million fractures
+MAX_CHARACTERS = 2 * 10**8  # in a file; some million fractures
 SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # unsupported separators
 
 
@@ -47,8 +47,8 @@ def numbers(words, place, table, columns):
         if not math.isfinite(found[-1]):
             table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is not a finite number")
             return None
-        if abs(found[-1]) > MOST:
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} exceeds {MOST:g}, the largest allowed value")
+        if abs(found[-1]) > MAXIMUM:
+            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} exceeds {MAXIMUM:g}, the largest allowed value")
             return None
     return np.array(found)
 
@@ -75,11 +75,11 @@ def read_lines(path):
         if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # open() reports folders
             refuse("is not a regular file, but a pipe, a socket or a device")
         with open(path, encoding="utf-8-sig") as file:
-            text = file.read(MOST_CHARACTERS + 1)
+            text = file.read(MAX_CHARACTERS + 1)
     except (OSError, UnicodeDecodeError) as error:
         refuse(getattr(error, "strerror", None) or "is not UTF-8 text")
-    if len(text) > MOST_CHARACTERS:
-        refuse(f"has more than {MOST_CHARACTERS:g} characters; divide it into several sets, or remove fractures")
+    if len(text) > MAX_CHARACTERS:
+        refuse(f"has more than {MAX_CHARACTERS:g} characters; divide it into several sets, or remove fractures")
     return text.splitlines()
 
 

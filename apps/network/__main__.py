@@ -64,9 +64,9 @@ def make(options):
     table, scene = (Path(f"{options.output}{ending}") for ending in (".csv", ".xml"))
     write({table: files.table(sets, statistics.dim),
            scene: files.scene(statistics, table.name)})
-    told = [line for one, fractures in sets for line in realised.of_set(one, fractures, statistics)]
-    told += [f"replaced due to conflicts with other fractures: {replaced}"] if replaced else []
-    return "\n".join([*told, f"wrote {table} and {scene}"])
+    reported = [line for one, fractures in sets for line in realised.of_set(one, fractures, statistics)]
+    reported += [f"replaced due to conflicts with other fractures: {replaced}"] if replaced else []
+    return "\n".join([*reported, f"wrote {table} and {scene}"])
 
 
 def main(words=None):

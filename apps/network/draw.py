@@ -7,8 +7,8 @@ import numpy as np
 from generator import fisher, von_mises
 from shapes import NetworkError
 
-MOST = 10**5  # fractures of a set
-MOST_CANDIDATES = 10**8
+MAXIMUM = 10**5  # fractures of a set
+MAX_CANDIDATES = 10**8
 BATCH = 4096  # candidates at once
 
 
@@ -61,8 +61,8 @@ class Stream:
                 self.rows = self.rows[:self.one.number or count_for(parts, self.target)]
                 return self.drawn.only(self.rows)
             expected = 0 if self.one.number or not len(parts) else self.target / parts.mean()
-            if expected > MOST or self.tried > MOST_CANDIDATES:
-                raise NetworkError(f"{self.path}: sets > {self.one.name}: has more than {MOST} fractures; reduce the "
+            if expected > MAXIMUM or self.tried > MAX_CANDIDATES:
+                raise NetworkError(f"{self.path}: sets > {self.one.name}: has more than {MAXIMUM} fractures; reduce the "
                                    "intensity, or increase the sizes", [self.path])
             self.drawn, self.tried = self.drawn.and_more(self.candidates.batch(BATCH)), self.tried + BATCH
 

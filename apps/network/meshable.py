@@ -10,7 +10,7 @@ from plan import Plan
 from progress import doing
 from shapes import NetworkError
 
-MOST_REPLACED = 0.2  # of the fractures; a larger share would change the statistics
+MAX_REPLACED = 0.2  # of the fractures; a larger share would change the statistics
 
 
 def conflicts(program, statistics, sets):
@@ -44,7 +44,7 @@ def replace_conflicts(program, statistics, streams):
         replaced += len(rows)
         if not rows:
             return replaced
-        if replaced > max(1, MOST_REPLACED * len(place)):
+        if replaced > max(1, MAX_REPLACED * len(place)):
             raise NetworkError(f"{statistics.path}: is too dense: more than a fifth of the fractures would be too "
                                "close to others for a mesh; reduce the intensities, or add --unchecked",
                                [statistics.path])

@@ -31,9 +31,9 @@ class SizeLaw:
         return np.average(function(self.sizes), weights=weights)
 
 
-def table(least, most, log_density):
+def table(minimum, maximum, log_density):
     """Returns the law with a density per size, given by its logarithm up to a constant."""
-    logs = np.linspace(np.log(least), np.log(most), POINTS)
+    logs = np.linspace(np.log(minimum), np.log(maximum), POINTS)
     found = logs + log_density(np.exp(logs))
     return SizeLaw(logs, np.exp(found - found.max()))
 
@@ -42,30 +42,30 @@ def constant(size):
     return table(size, size, np.zeros_like)
 
 
-def power_law(alpha, least, most):
+def power_law(alpha, minimum, maximum):
     """Density proportional to R^-(1 + alpha) between two limits."""
-    return table(least, most, lambda r: -(1 + alpha) * np.log(r))
+    return table(minimum, maximum, lambda r: -(1 + alpha) * np.log(r))
 
 
-def log_normal(mu, sigma, least=None, most=None):
+def log_normal(mu, sigma, minimum=None, maximum=None):
     """ln R has the mean mu and the standard deviation sigma, before truncation."""
     far = 8 * sigma
-    return table(least or np.exp(mu - far), most or np.exp(mu + far),
+    return table(minimum or np.exp(mu - far), maximum or np.exp(mu + far),
                  lambda r: -0.5 * ((np.log(r) - mu) / sigma) ** 2 - np.log(r))
 
 
-def exponential(mean, least=None, most=None):
+def exponential(mean, minimum=None, maximum=None):
     """Density proportional to exp(-R / mean), before truncation."""
-    return table(least or 1e-6 * mean, most or 40 * mean, lambda r: -r / mean)
+    return table(minimum or 1e-6 * mean, maximum or 40 * mean, lambda r: -r / mean)
 
 
-def fitted_alpha(sizes, least, most):
+def fitted_alpha(sizes, minimum, maximum):
     """Returns the maximum-likelihood estimate of alpha and its standard error, for a power law with these limits.
 
     The mean of ln R increases with decreasing alpha. The error is 1 / sqrt(n variance of ln R)."""
     low, high, target = -20.0, 20.0, np.mean(np.log(sizes))
     for _ in range(60):
         alpha = 0.5 * (low + high)
-        law = power_law(alpha, least, most)
+        law = power_law(alpha, minimum, maximum)
         low, high = (alpha, high) if law.mean(np.log) > target else (low, alpha)
     return alpha, 1 / np.sqrt(len(sizes) * law.mean(lambda r: (np.log(r) - target) ** 2))

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import size_law
-from shapes import MOST, NetworkError, frame
+from shapes import MAXIMUM, NetworkError, frame
 
-POSITIVE = "a positive number, at most 1e12", lambda x: 0 < x <= MOST
-NOT_NEGATIVE = "a number from 0 to 1e12", lambda x: 0 <= x <= MOST
+POSITIVE = "a positive number, at most 1e12", lambda x: 0 < x <= MAXIMUM
+NOT_NEGATIVE = "a number from 0 to 1e12", lambda x: 0 <= x <= MAXIMUM
 EXPONENT = "a number from -10 to 10", lambda x: -10 <= x <= 10
 LOG_MEAN = "a number from -20 to 20", lambda x: -20 <= x <= 20
 LOG_DEVIATION = "a positive number, at most 5", lambda x: 0 < x <= 5
@@ -99,7 +99,7 @@ class Statistics:
 def read_domain(section):
     def corner(name):
         return section.read(name, "2 or 3 numbers of at most 1e12", lambda x: isinstance(x, list) and len(x) in (2, 3)
-                            and all(is_number(y) and abs(y) <= MOST for y in x))
+                            and all(is_number(y) and abs(y) <= MAXIMUM for y in x))
     low, high = corner("lower_corner"), corner("upper_corner")
     section.end()
     if len(low) != len(high) or not all(a < b for a, b in zip(low, high)):
@@ -109,10 +109,10 @@ def read_domain(section):
 
 def limits(section, default=REQUIRED):
     """Returns the limits of a size; None for a default."""
-    least, most = (section.number(name, POSITIVE, default) for name in ("minimum", "maximum"))
-    if least and most and least >= most:
-        section.refuse("maximum", f"is {most!r}, must be above the minimum, {least!r}")
-    return least, most
+    minimum, maximum = (section.number(name, POSITIVE, default) for name in ("minimum", "maximum"))
+    if minimum and maximum and minimum >= maximum:
+        section.refuse("maximum", f"is {maximum!r}, must be above the minimum, {minimum!r}")
+    return minimum, maximum
 
 
 def read_size(parent, name):

@@ -20,8 +20,8 @@ HEAT = Kind("temperature", "K", "heat flux", "heat flux (W/m²)", None, None, No
 def decades(values):
     """Returns a logarithmic norm over at most eight decades below the largest value, or a linear one for zero flow."""
     largest = np.max(values, initial=0)
-    least = np.min(values[values > 0], initial=largest)
-    return LogNorm(max(least, 1e-8 * largest), max(largest, 1.001 * least)) if largest > 0 else limits(values)
+    minimum = np.min(values[values > 0], initial=largest)
+    return LogNorm(max(minimum, 1e-8 * largest), max(largest, 1.001 * minimum)) if largest > 0 else limits(values)
 
 
 def at_start(expression, surface):

@@ -7,7 +7,7 @@ from style import (FACE_COLOURS, FACE_STATES, FAINT, INK, LINES, Quantity, colou
 
 
 STRAIGHT = np.cos(np.radians(30))
-MOST_NAMES = 15  # of traces of one fracture
+MAX_NAMES = 15  # of traces of one fracture
 
 
 def onward(face, at, others, n_there, faces, key, points):
@@ -136,7 +136,7 @@ def draw_states(ax, traces, state, first):
         ax.pcolormesh(trace.arc, [k + 0.54, k + 1.46], strip, cmap=FACE_COLOURS, vmin=-0.5, vmax=3.5)
     ax.set(xlabel="arc length (m)", ylim=(len(traces) + 0.5, 0.5))
     ax.yaxis.set_major_locator(plt.MaxNLocator(6, integer=True, min_n_ticks=1) if len(traces) > 1 else plt.NullLocator())
-    named = 1 < len(traces) <= MOST_NAMES
+    named = 1 < len(traces) <= MAX_NAMES
     if named:
         ax.set_yticks(range(1, len(traces) + 1), [trace.label for trace in traces], fontsize=5)
     if first:
@@ -161,7 +161,7 @@ def legend_of_lines(ax, row, n_traces):
     ax.legend(handles=handles, loc="upper left", bbox_to_anchor=(1, 1), fontsize=7, handlelength=1.6)
 
 
-MOST_COLUMNS = 4
+MAX_COLUMNS = 4
 
 
 def along(surface, names, title, length, stress, singles=()):
@@ -169,7 +169,7 @@ def along(surface, names, title, length, stress, singles=()):
     named = {number: names[number] if number < len(names) else f"fracture {number}" for number in set(surface.cell_data["fracture"].astype(int))}
     numbers = sorted(named, key=lambda number: natural(named[number]))
     traces = {number: traces_of(surface, number, named[number], singles) for number in numbers}
-    columns = min(len(numbers), MOST_COLUMNS)
+    columns = min(len(numbers), MAX_COLUMNS)
     blocks, strips = -(-len(numbers) // columns), min(0.2 + 0.06 * max(map(len, traces.values())), 1.5)
     width, height = max(5.2, 3.6 * columns), blocks * (5.4 + 1.6 * strips)
     figure = plt.figure(figsize=(width, height))

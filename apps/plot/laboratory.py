@@ -1,7 +1,7 @@
 """Picture of laboratory tests of several specimens: shear, dilation, stress paths with strength."""
 import numpy as np
 from read import PlotError, csv_rows
-from style import FAINT, MOST_CURVES, Quantity, give_room, look, plt
+from style import FAINT, MAX_CURVES, Quantity, give_room, look, plt
 
 REACHED = 1e-3  # relative distance to the strength at which it counts as reached
 ABOVE = 1.15    # of the largest shear traction: upper limit of drawn strengths
@@ -42,7 +42,7 @@ def bounds(ax, curves, compression, shear):
             peaks.append((stress[peak], strength[peak]))
         elif np.ptp(stress) > 0:
             shown = np.where(strength <= ABOVE * largest, strength, np.nan)
-            ax.plot(compression(stress), shear(shown), color=look(k % MOST_CURVES)["color"], linestyle=":", linewidth=0.8)
+            ax.plot(compression(stress), shear(shown), color=look(k % MAX_CURVES)["color"], linestyle=":", linewidth=0.8)
     if peaks:
         ax.plot(*(quantity(values) for quantity, values in zip((compression, shear), np.array(sorted(peaks)).T)), "o", color=FAINT,
                 markersize=4, markerfacecolor="none", label="largest strength")
@@ -56,7 +56,7 @@ def of_specimens(curves, title):
     opening = Quantity("normal jump", "m", *(c["jump_n"] for c in curves.values()))
     compression = Quantity("compression", "Pa", *(c["traction_n"] for c in curves.values()))
     for k, (name, curve) in enumerate(curves.items()):
-        line = {key: look(k % MOST_CURVES)[key] for key in ("color", "linestyle")}
+        line = {key: look(k % MAX_CURVES)[key] for key in ("color", "linestyle")}
         left.plot(slip(size(curve, "jump")), shear(size(curve, "traction")), label=name, **line)
         middle.plot(slip(size(curve, "jump")), opening(curve["jump_n"]), **line)
         right.plot(compression(-curve["traction_n"]), shear(size(curve, "traction")), **line)

@@ -7,13 +7,13 @@ from style import FAINT, LINES, STYLES, foremost, plt
 
 FEWEST = 20  # smallest number of fractures with a magnitude
 FEWEST_OF_SLOPE = 50  # smallest number above the magnitude of completeness, for a b-value
-MOST_NAMES = 8  # of events in the picture over time
+MAX_NAMES = 8  # of events in the picture over time
 
 
-def b_value(magnitudes, least):
-    """Returns the slope of log10 N(>= M) and its standard error, by maximum likelihood above `least` (Aki 1965)."""
-    above = magnitudes[magnitudes >= least]
-    b = np.log10(np.e) / (np.mean(above) - least)
+def b_value(magnitudes, minimum):
+    """Returns the slope of log10 N(>= M) and its standard error, by maximum likelihood above `minimum` (Aki 1965)."""
+    above = magnitudes[magnitudes >= minimum]
+    b = np.log10(np.e) / (np.mean(above) - minimum)
     return b, b / np.sqrt(len(above))
 
 
@@ -35,16 +35,16 @@ def of_step(step, title):
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     count = np.arange(len(magnitudes), 0, -1)
     ax.semilogy(magnitudes, count, "o", markersize=3, color=LINES[0], label=f"{len(magnitudes)} fractures")
-    least = complete(magnitudes)
-    above = magnitudes >= least
-    if above.sum() >= FEWEST_OF_SLOPE and magnitudes[-1] > least:
-        b, error = b_value(magnitudes, least)
+    minimum = complete(magnitudes)
+    above = magnitudes >= minimum
+    if above.sum() >= FEWEST_OF_SLOPE and magnitudes[-1] > minimum:
+        b, error = b_value(magnitudes, minimum)
         ax.semilogy(
             magnitudes[above],
-            above.sum() * 10 ** (-b * (magnitudes[above] - least)),
+            above.sum() * 10 ** (-b * (magnitudes[above] - minimum)),
             color=LINES[3],
             linestyle=STYLES[1],
-            label=f"b = {b:.2f} ± {error:.2f} for magnitudes of at least {least:.1f}",
+            label=f"b = {b:.2f} ± {error:.2f} for magnitudes of at least {minimum:.1f}",
         )
     ax.set(xlabel="moment magnitude (-)", ylabel="fractures with at least this magnitude (-)")
     ax.legend()
@@ -72,7 +72,7 @@ def draw_curve(ax, times, values, label):
 
 def write_names(ax, events, ends):
     """Writes the fractures of the largest events above their marks; a name that overlaps another is omitted."""
-    shown, taken = foremost([event.magnitude for event in events], MOST_NAMES), []
+    shown, taken = foremost([event.magnitude for event in events], MAX_NAMES), []
     ax.figure.draw_without_rendering()
     for k in sorted(shown, key=lambda k: -events[k].magnitude):
         late = ends[k] > 0.5 * sum(ax.get_xlim())

@@ -9,9 +9,9 @@ from bulk import tensors
 from fractures import effective, scales
 from style import FAINT, INK, LINES, Quantity, STATE_COLOURS, STATES, STYLES, foremost, look, plt, without_noise
 
-MOST_ENVELOPES = 2 * len(STYLES)
-MOST_NAMES = 3  # of joints with the same strength
-MOST_PATHS = 3  # of single fractures
+MAX_ENVELOPES = 2 * len(STYLES)
+MAX_NAMES = 3  # of joints with the same strength
+MAX_PATHS = 3  # of single fractures
 
 
 def number(joint, name, default=None):
@@ -82,7 +82,7 @@ def draw_envelopes(ax, joints, traction, largest):
         bound = strength(joint, normal)
         (unknown if bound is None else names.setdefault(tuple(bound), [])).append(name)
     for k, bound in enumerate(names):
-        if k == MOST_ENVELOPES:
+        if k == MAX_ENVELOPES:
             unknown += [name for some in list(names.values())[k:] for name in some]
             break
         ax.plot(
@@ -98,8 +98,8 @@ def draw_envelopes(ax, joints, traction, largest):
 
 def listed(names):
     """Returns the first names and the number of the others."""
-    others = len(names) - MOST_NAMES
-    return ", ".join(map(str, names[:MOST_NAMES])) + (f" and {others} more" if others > 0 else "")
+    others = len(names) - MAX_NAMES
+    return ", ".join(map(str, names[:MAX_NAMES])) + (f" and {others} more" if others > 0 else "")
 
 
 def stress_paths(content, time):
@@ -110,7 +110,7 @@ def stress_paths(content, time):
     if len(steps) < 2 or "max_slip" not in steps[-1]["single_fractures"]:
         return {}
     slip = [value or 0 for value in steps[-1]["single_fractures"]["max_slip"]]
-    shown = [k for k in foremost(slip, MOST_PATHS) if slip[k] > 0]
+    shown = [k for k in foremost(slip, MAX_PATHS) if slip[k] > 0]
     means = np.array(
         [[step["single_fractures"]["mean_traction_local"][k] for k in shown] for step in steps], dtype=float
     )

@@ -7,8 +7,8 @@ import space
 from places import region
 from style import INK
 
-MOST_NAMES = 12  # of fractures in one view
-MOST_LISTED = 8  # hidden fractures
+MAX_NAMES = 12  # of fractures in one view
+MAX_LISTED = 8  # hidden fractures
 
 
 class Network:
@@ -48,14 +48,14 @@ class Network:
         jump = np.linalg.norm(self.data["jump local"][:, 1:], axis=1)
         largest = {k: np.max(jump[self.numbers == k]) for k in self.places}
         order = sorted(self.places, key=lambda k: -largest[k])
-        if len(order) > MOST_NAMES:
+        if len(order) > MAX_NAMES:
             order = [k for k in order if largest[k] > 1e-3 * largest[order[0]]]
         space.write_names(
-            ax, [(self.names[k], self.places[k]) for k in order if len(self.places[k])], self.bounds, MOST_NAMES
+            ax, [(self.names[k], self.places[k]) for k in order if len(self.places[k])], self.bounds, MAX_NAMES
         )
 
     def note(self):
         """Returns the remark on the region and on hidden fractures."""
-        others = len(self.hidden) - MOST_LISTED
-        listed = ", ".join(self.hidden[:MOST_LISTED]) + (f" and {others} more" if others > 0 else "")
+        others = len(self.hidden) - MAX_LISTED
+        listed = ", ".join(self.hidden[:MAX_LISTED]) + (f" and {others} more" if others > 0 else "")
         return "; ".join(["region with slip"] * self.zoomed + [f"hidden behind others: {listed}"] * bool(self.hidden))

@@ -5,7 +5,7 @@ import numpy as np
 from read import PlotError, csv_rows
 from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit, when
 
-MOST_LINES = 6  # with colours in one panel
+MAX_LINES = 6  # with colours in one panel
 
 
 def clock(times, wanted):
@@ -54,7 +54,7 @@ def draw(ax, times, label, base, curves):
     """Draws the curves with the largest changes in colour, the others thin."""
     quantity = Quantity(label, base, *curves.values()) if base else None
     names = list(curves)
-    shown = foremost([np.nanmax(values) - np.nanmin(values) for values in curves.values()], MOST_LINES)
+    shown = foremost([np.nanmax(values) - np.nanmin(values) for values in curves.values()], MAX_LINES)
     for k, name in enumerate(names):
         values = quantity(curves[name]) if quantity else curves[name]
         if k in shown:

@@ -274,10 +274,10 @@ def write_coordinates(ax, k, ends, size, middle):
     )
 
 
-def write_names(ax, named, bounds, most):
-    """Writes names, [(name, visible places)], at most `most`, the first ones first, without overlap."""
+def write_names(ax, named, bounds, maximum):
+    """Writes names, [(name, visible places)], at most `maximum`, the first ones first, without overlap."""
     taken = []
-    for name, places in named[:most]:
+    for name, places in named[:maximum]:
         middle = np.mean(places, axis=0)
         order = np.argsort(np.linalg.norm(places - middle, axis=1), kind="stable")
         found = place_of_name(

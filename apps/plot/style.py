@@ -13,7 +13,7 @@ INK, FAINT, PAPER = "#262933", "#8a8f99", "#f4f1ea"
 LINES = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377"]  # suits colour blindness (Tol)
 STYLES = ["-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5))]
 MARKERS = ["o", "s", "^", "D"]
-MOST_CURVES = len(LINES) * len(STYLES)  # with different styles
+MAX_CURVES = len(LINES) * len(STYLES)  # with different styles
 NOISE = 1e-9  # relative round-off: smaller values are zero, smaller differences are equal
 STATES = ["open", "stick", "slip"]
 STATE_COLOURS = ListedColormap(["#66ccee", "#bbbbbb", "#cc3311"])
@@ -35,14 +35,14 @@ PREFIXES = {"m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
             "m³": [(1, "m³"), (1e-3, "l")],
             "m²": [(1, "m²")],
             "s": [(86400, "d"), (3600, "h"), (60, "min"), (1, "s")]}
-LEAST_TIMES = 2  # smallest value in a unit of time
+MIN_TIMES = 2  # smallest value in a unit of time
 
 
 def unit(largest, base):
     """Returns (factor, name) of a readable unit for numbers up to `largest`, given in the SI unit `base`."""
-    least = LEAST_TIMES if base == "s" else 0.5
+    minimum = MIN_TIMES if base == "s" else 0.5
     for factor, name in PREFIXES[base]:
-        if largest >= least * factor:
+        if largest >= minimum * factor:
             return factor, name
     return 1, base
 
@@ -98,9 +98,9 @@ def natural(name):
     return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", name) if part]
 
 
-def foremost(sizes, most):
-    """Returns the indices of the `most` largest sizes, in ascending order, for curves in colour."""
-    return sorted(np.argsort(-np.asarray(sizes), kind="stable")[:most].tolist())
+def foremost(sizes, maximum):
+    """Returns the indices of the `maximum` largest sizes, in ascending order, for curves in colour."""
+    return sorted(np.argsort(-np.asarray(sizes), kind="stable")[:maximum].tolist())
 
 
 def without_noise(values, scale):

@@ -30,7 +30,7 @@ struct Interrupt {
 
   bool operator()() const {
     if (!failure->empty()) return true;
-    const py::gil_scoped_acquire hold;
+    const py::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() == 0) return false;
     PyErr_Clear();
     return true;
@@ -302,7 +302,7 @@ void bind_reports(py::module_& m) {
       .def_readonly("substeps", &StepReport::substeps)
       .def_readonly("cuts", &StepReport::cuts)
       .def_readonly("reason", &StepReport::reason)
-      .def_readonly("loose", &StepReport::loose);
+      .def_readonly("floating", &StepReport::floating);
   using model::StepTaken;
   py::class_<StepTaken>(m, "StepTaken", "A step of a run.")
       .def_readonly("report", &StepTaken::report)

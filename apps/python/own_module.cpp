@@ -21,7 +21,7 @@ namespace {
 /// Runs work() with the interpreter lock. An exception becomes an Error, which is reported on all ranks.
 template <class Work>
 auto in_python(const std::string& module, const Work& work) {
-  const py::gil_scoped_acquire hold;
+  const py::gil_scoped_acquire lock;
   try {
     return work();
   } catch (const py::error_already_set& error) {
@@ -184,7 +184,7 @@ class OwnModule final : public assembly::Module,
     }
   }
   ~OwnModule() override {
-    const py::gil_scoped_acquire hold;
+    const py::gil_scoped_acquire lock;
     blocks_.clear();
     python_ = py::object();
   }
@@ -325,7 +325,7 @@ class OwnModule final : public assembly::Module,
 model::ModuleFactory own_modules(const py::object& modules, MeshOf mesh_of, const Failure& failure) {
   if (modules.is_none() || py::len(modules) == 0) return {};
   const auto held = std::shared_ptr<py::object>(new py::object(modules), [](py::object* object) {
-    const py::gil_scoped_acquire hold;
+    const py::gil_scoped_acquire lock;
     delete object;
   });
   return [held, mesh_of, failure](const mesh::Mesh& mesh) {

@@ -5,7 +5,7 @@ import numpy as np
 from numbers_in_words import RATES, number, quantity
 
 Check = namedtuple("Check", "name verdict words")  # verdict: "passed", "failed", or "noted" without a bound
-MOST_UNBALANCED = 1e-6  # relative to the largest reaction or force on a fracture
+MAX_UNBALANCED = 1e-6  # relative to the largest reaction or force on a fracture
 WORST_VIOLATION = 1e-6  # relative to the largest displacement or traction
 WELL_ESTIMATED = 0.05  # relative error
 LOADS = "traction", "confining pressure", "foundation stiffness", "body force", "gravity", "periodic"
@@ -36,11 +36,11 @@ def convergence(steps):
     if failed:
         return Check("convergence", "failed", f"step {', '.join(failed[:5])} did not converge")
     left = max((value for step in steps for value in step["measures"].values() if value is not None), default=0)
-    most = max(step["newton_iterations"] for step in steps)
+    maximum = max(step["newton_iterations"] for step in steps)
     return Check(
         "convergence",
         "passed",
-        f"all steps; at most {most} Newton iterations in one; largest relative residual "
+        f"all steps; at most {maximum} Newton iterations in one; largest relative residual "
         f"at the end of a step {number(left)}",
     )
 
@@ -89,7 +89,7 @@ def forces(steps, scene):
     largest = max(np.max(np.abs(forces), initial=0) for forces in (list(reactions.values()), on_fractures))
     relative = np.max(np.abs(total)) / largest if largest > 0 else 0
     loads = [entry for entry in LOADS if scene.has(entry)]
-    if loads and relative > MOST_UNBALANCED:
+    if loads and relative > MAX_UNBALANCED:
         yield Check(
             "balance of forces",
             "noted",
@@ -99,7 +99,7 @@ def forces(steps, scene):
     else:
         yield Check(
             "balance of forces",
-            "passed" if relative <= MOST_UNBALANCED else "failed",
+            "passed" if relative <= MAX_UNBALANCED else "failed",
             f"the sum of the reactions is {number(relative)} of the largest force",
         )
 

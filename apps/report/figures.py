@@ -7,7 +7,7 @@ import numpy as np
 from numbers_in_words import RATES, in_unit, number, quantity, unit_of
 
 Table = namedtuple("Table", "title columns rows note")
-MOST_ROWS = 30
+MAX_ROWS = 30
 NOISE = 1e-9  # round-off relative to the largest value of a column
 
 OF_FRACTURES = [
@@ -55,7 +55,7 @@ def singles(content, step, found):
 def of_fractures(fractures, dim):
     """Yields the table of fractures, sorted by slip."""
     names = sorted(fractures, key=lambda name: -(fractures[name].get("max_slip") or 0))
-    shown = names[:MOST_ROWS]
+    shown = names[:MAX_ROWS]
     columns = [("fracture", shown)]
     for key, title, base in OF_FRACTURES:
         if any(fractures[name].get(key) is not None for name in shown):
@@ -73,7 +73,7 @@ def of_fractures(fractures, dim):
 def of_joints(content, reference):
     """Yields the table of joint entries that single fractures have of their own, from columns of their file."""
     own = {one["name"]: one["own_joint"] for one in content.get("single_fractures", []) if "own_joint" in one}
-    shown = list(own)[:MOST_ROWS]
+    shown = list(own)[:MAX_ROWS]
     entries = sorted({entry for name in shown for entry in own[name]}, key=lambda entry: (entry != "material", entry))
     rows = [
         (
@@ -144,7 +144,7 @@ def of_costs(content):
 
 def of_events(found, dim):
     """Yields the table of slip events, the largest first."""
-    shown = sorted(found, key=lambda event: -event.moment)[:MOST_ROWS]
+    shown = sorted(found, key=lambda event: -event.moment)[:MAX_ROWS]
     if not shown:
         return
     moment = ("moment per depth", "N") if dim == 2 else ("moment", "N m")

@@ -30,7 +30,7 @@ def rounded(table, x):
 class JointLaw:
     """Joint law of one material. entry(name, default) returns a number, kind(role) the name of a law.
 
-    Arguments `faces` have the tractions `normal` and `shear`, `slip` = |u_t^p|, and in `told` the history
+    Arguments `faces` have the tractions `normal` and `shear`, `slip` = |u_t^p|, and in `history` the history
     fields by name."""
 
     def __init__(self, entry, kind):
@@ -72,33 +72,33 @@ class JointLaw:
             return self.number("friction coefficient") * load
         if kind == "slip weakening":
             peak, residual = self.number("friction coefficient"), self.number("residual friction coefficient")
-            left = np.maximum(1 - faces.told["accumulated slip"] / self.entry("weakening distance", None), 0)
+            left = np.maximum(1 - faces.history["accumulated slip"] / self.entry("weakening distance", None), 0)
             return (residual + (peak - residual) * left) * load
         if kind == "composed":
             basic, asperity = self.number("basic friction coefficient"), math.tan(math.radians(self.entry("asperity angle", None)))
             rides = np.maximum(1 - load / self.entry("transition stress", None), 0) ** self.entry("transition exponent", 1.5)
             slope = rides * asperity * dilation
             return load * ((basic + slope) / (1 - basic * slope) + (1 - rides) * self.number("asperity friction coefficient") * friction)
-        residual, most = self.entry("residual friction angle", None), self.entry("largest friction angle", 70)
+        residual, maximum = self.entry("residual friction angle", None), self.entry("largest friction angle", 70)
         roughness, strength = self.roughness
         rough = roughness * np.log10(strength / np.clip(load, 1e-300, strength))
-        rough = np.minimum(rough, most - residual)
+        rough = np.minimum(rough, maximum - residual)
         if kind == "mobilised Barton-Choubey":
-            x = faces.told["accumulated slip"] / self.peak_slip
+            x = faces.history["accumulated slip"] / self.peak_slip
             return load * np.tan(np.radians(residual * rounded(RESIDUAL, x) + rough * rounded(ROUGHNESS, x)))
         if kind == "Barton-Choubey":
             return load * np.tan(np.radians(residual + rough))
         raise ValueError(f'friction "{kind}" is not known here')
 
     @property
-    def least_friction(self):
+    def min_friction(self):
         """Lower bound of the friction coefficient after any slip and under any load, without the bond."""
         kind = self.kinds["friction"]
         if "Barton-Choubey" in kind:
-            least = math.tan(math.radians(self.entry("residual friction angle", None)))
+            minimum = math.tan(math.radians(self.entry("residual friction angle", None)))
         else:
-            least = self.number({"Coulomb": "friction coefficient", "slip weakening": "residual friction coefficient"}.get(kind, "basic friction coefficient"))
-        return least * (1 if self.kinds["damage"] == "none" else self.entry("residual part of friction", 0))
+            minimum = self.number({"Coulomb": "friction coefficient", "slip weakening": "residual friction coefficient"}.get(kind, "basic friction coefficient"))
+        return minimum * (1 if self.kinds["damage"] == "none" else self.entry("residual part of friction", 0))
 
     @property
     def roughness(self):
@@ -128,7 +128,7 @@ class JointLaw:
     def _dilation(self, faces):
         kind, u = self.kinds["dilation"], faces.slip
         if kind == "mobilised":
-            return faces.told["opening by slip"]
+            return faces.history["opening by slip"]
         tangent = math.tan(math.radians(self.entry("dilation angle", 0)))
         if kind == "constant angle":
             return tangent * u
@@ -147,8 +147,8 @@ class JointLaw:
             closed = self._hyperbola(load)
             if kind != "Barton-Bandis with memory":
                 return closed
-            kept = self.entry("irrecoverable part of closure", 0)
-            return (1 - kept) * closed + kept * self._hyperbola(np.maximum(load, faces.told["largest compression"]))
+            irrecoverable = self.entry("irrecoverable part of closure", 0)
+            return (1 - irrecoverable) * closed + irrecoverable * self._hyperbola(np.maximum(load, faces.history["largest compression"]))
         K = self.entry("normal stiffness", None)
         if kind == "linear":
             return load / K
@@ -163,18 +163,18 @@ class JointLaw:
             a = 1e3 * self.entry("joint aperture", None)
             JRC, ratio = self.entry("joint roughness coefficient", None), self.entry("joint wall strength", None) / 1e6 / a
             A, B, C, D = (-0.2960, -0.0056, 2.2410, -0.2450) if self.entry("loading cycle", 1) == 1 else (-0.1032, -0.0074, 1.1350, -0.2510)
-            K, most = 1e9 * (-7.15 + 1.75 * JRC + 0.02 * ratio), 1e-3 * (A + B * JRC + C * ratio ** D)
+            K, maximum = 1e9 * (-7.15 + 1.75 * JRC + 0.02 * ratio), 1e-3 * (A + B * JRC + C * ratio ** D)
         else:
-            K, most = self.entry("normal stiffness", None), self.entry("maximum closure", math.inf)
-        if K is None or K == math.inf or most == 0:
+            K, maximum = self.entry("normal stiffness", None), self.entry("maximum closure", math.inf)
+        if K is None or K == math.inf or maximum == 0:
             return np.zeros_like(load)
-        return load / (K + load / most)
+        return load / (K + load / maximum)
 
     # ---- bond and damage ---------------------------------------------------------------------------------------------
 
     def whole(self, faces):
         """Remaining fraction of the bond."""
-        return 1 - faces.told["damage of bond"] if self.kinds["bond"] == "linear softening" else 1.0
+        return 1 - faces.history["damage of bond"] if self.kinds["bond"] == "linear softening" else 1.0
 
     def tension(self, faces):
         """Tensile strength, Pa."""
@@ -188,9 +188,9 @@ class JointLaw:
         parts = []
         for what, length in zip(("friction", "dilation"), lengths):
             residual = self.entry(f"residual part of {what}", 0)
-            part = residual + (1 - residual) * np.exp(-faces.told["damage history"] / length)
+            part = residual + (1 - residual) * np.exp(-faces.history["damage history"] / length)
             if self.kinds["damage"] == "anisotropic":
-                part = np.where(faces.slip < NEAR_ZERO * min(lengths), 1 - faces.told[f"damage of {what}"], part)
+                part = np.where(faces.slip < NEAR_ZERO * min(lengths), 1 - faces.history[f"damage of {what}"], part)
             parts.append(part)
         return parts
 
@@ -203,11 +203,11 @@ class JointLaw:
         Loads are divided by the normal stiffness. `path` contains the segments (plastic jump from, to, weight
         k) of all steps up to this one; it is None if a step is unknown."""
         rubbed = self.rubbed_share(faces, before, path and path[:-1]) * _slip_of_step(faces, before)
-        wrong, told, was = np.zeros(len(rubbed)), faces.told, before.told
+        wrong, reported, was = np.zeros(len(rubbed)), faces.history, before.history
 
         def must_be(name, value, scale=1.0):
             nonlocal wrong
-            wrong = np.maximum(wrong, np.abs(told[name] - value) / scale)
+            wrong = np.maximum(wrong, np.abs(reported[name] - value) / scale)
         if self.kinds["friction"] in ("slip weakening", "mobilised Barton-Choubey") or self.kinds["dilation"] == "mobilised":
             must_be("accumulated slip", was["accumulated slip"] + rubbed)
         if self.kinds["dilation"] == "mobilised":
@@ -218,7 +218,7 @@ class JointLaw:
             must_be("damage history", was["damage history"] + self.weight(faces) * rubbed)
         if self.kinds["damage"] == "anisotropic" and path:
             known, length = history_of(path, faces)
-            off = np.abs(told["damage history"] - known) - told["error of damage history"] * length
+            off = np.abs(reported["damage history"] - known) - reported["error of damage history"] * length
             wrong = np.maximum(wrong, np.where(faces.slip > 0, off, 0))
         return wrong
 
@@ -231,16 +231,16 @@ class JointLaw:
         touch = (~closed | (faces.normal >= 0)) & (np.abs(apart) <= JUST_TOUCH * (np.abs(faces.jump[:, 0]) + faces.slip))
         slip = _slip_of_step(faces, before)
         if self.kinds["dilation"] == "mobilised":
-            most, told = slip, faces.told["accumulated slip"] - before.told["accumulated slip"]
+            maximum, reported = slip, faces.history["accumulated slip"] - before.history["accumulated slip"]
         elif self.kinds["damage"] == "isotropic":
-            most, told = self.weight(faces) * slip, faces.told["damage history"] - before.told["damage history"]
+            maximum, reported = self.weight(faces) * slip, faces.history["damage history"] - before.history["damage history"]
         elif self.kinds["damage"] == "anisotropic" and path is not None:
-            kept = history_of(path, faces)[0]
+            previous = history_of(path, faces)[0]
             segment = before.plastic[:, 1:], faces.plastic[:, 1:], self.weight(faces)
-            most, told = history_of([segment], faces)[0], faces.told["damage history"] - kept
+            maximum, reported = history_of([segment], faces)[0], faces.history["damage history"] - previous
         else:
             return closed.astype(float)
-        share = np.clip(told / np.where(most > 0, most, 1), 0, 1)
+        share = np.clip(reported / np.where(maximum > 0, maximum, 1), 0, 1)
         return np.where(touch, share, closed)
 
     def weight(self, faces):
@@ -257,7 +257,7 @@ class JointLaw:
         roughness, strength = self.roughness
         load = np.maximum(-faces.normal, 1e-6 * strength)
         angle = np.radians(roughness * np.log10(np.maximum(strength / load, 1)) / self.entry("asperity damage coefficient", 2))
-        begin = before.told["accumulated slip"] / self.peak_slip
+        begin = before.history["accumulated slip"] / self.peak_slip
         end = begin + np.maximum(rubbed, 1e-12 * self.peak_slip) / self.peak_slip
         points, weights = np.polynomial.legendre.leggauss(12)
         total = 0

@@ -9,14 +9,14 @@ PREFIXED = {
     "J": ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1, "J")),
 }
 RATES = {"fluid": ("m³/s", "m²/s"), "heat": ("W", "W/m")}  # in 3D, and per depth in 2D
-LEAST = 0.5, {"s": 2, "m": 0.8}  # smallest number in a unit
+MINIMUM = 0.5, {"s": 2, "m": 0.8}  # smallest number in a unit
 ROUND = {"m": ("km",)}  # not selected for other lengths
 
 
 def unit_of(largest, base):
     """Returns (factor, unit) that makes the largest of several numbers readable."""
     for factor, name in PREFIXED.get(base, ((1, base),)):
-        if largest >= LEAST[1].get(base, LEAST[0]) * factor and name not in ROUND.get(base, ()):
+        if largest >= MINIMUM[1].get(base, MINIMUM[0]) * factor and name not in ROUND.get(base, ()):
             return factor, name
     return PREFIXED[base][-1] if largest > 0 and base in PREFIXED else (1, base)
 

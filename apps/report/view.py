@@ -8,7 +8,7 @@ import numpy as np
 import read
 from style import STATE_COLOURS, STATES, Quantity, limits, plt, without_noise
 
-MOST_TRIANGLES = 60000  # of each surface; larger surfaces are decimated
+MAX_TRIANGLES = 60000  # of each surface; larger surfaces are decimated
 RIBBON = 0.006  # width of a trace in 2D / size of the body
 THROUGH = 0.12  # opacity of rock with fractures inside
 PALETTES = {"slip": "YlOrRd", "tangential jump": "YlOrRd", "opening": "RdBu_r"}
@@ -79,13 +79,13 @@ def thinned(points, triangles, arrays):
     data.GetPointData().AddArray(number)
     decimate = vtkDecimatePro()
     decimate.SetInputData(data)
-    decimate.SetTargetReduction(1 - MOST_TRIANGLES / len(triangles))
+    decimate.SetTargetReduction(1 - MAX_TRIANGLES / len(triangles))
     decimate.SetFeatureAngle(SHARPEST)
     decimate.PreserveTopologyOff()
     decimate.Update()
     out = decimate.GetOutput()
-    kept = vtk_to_numpy(out.GetPointData().GetArray("number")).astype(int)
-    return points[kept], vtk_to_numpy(out.GetPolys().GetConnectivityArray()).reshape(-1, 3), [a[kept] for a in arrays]
+    selected = vtk_to_numpy(out.GetPointData().GetArray("number")).astype(int)
+    return points[selected], vtk_to_numpy(out.GetPolys().GetConnectivityArray()).reshape(-1, 3), [a[selected] for a in arrays]
 
 
 def means_at_points(n_points, triangles, values):
@@ -97,7 +97,7 @@ def means_at_points(n_points, triangles, values):
 
 def content(name, points, triangles, fields, displacement, opacity=1.0):
     """Returns a surface for viewer.js. A decimated surface has all fields on points, with rounded states."""
-    if len(triangles) > MOST_TRIANGLES:
+    if len(triangles) > MAX_TRIANGLES:
         on_points = [
             f["values"] if f["on"] == "points" else means_at_points(len(points), triangles, f["values"]) for f in fields
         ]

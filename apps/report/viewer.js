@@ -121,16 +121,16 @@ function start(place, content) {
   controls.append(...surfaces.map((surface) => choices(surface, render)));
   if (content.warp > 0) {
     const slider = element('input', { type: 'range', min: 0, max: 4, step: 0.1, value: 1 });
-    const told = element('span');
+    const label = element('span');
     const warp = () => {
       const factor = slider.value * content.warp;
       surfaces.forEach((surface) => surface.warp(factor));
-      told.textContent = `× ${Number(factor.toPrecision(3))}`;
+      label.textContent = `× ${Number(factor.toPrecision(3))}`;
       render();
     };
     slider.addEventListener('input', warp);
     warp();
-    controls.append(element('div', { className: 'choice' }, element('label', {}, 'deformation ', slider, told)));
+    controls.append(element('div', { className: 'choice' }, element('label', {}, 'deformation ', slider, label)));
   }
   const camera = view.getRenderer().getActiveCamera();
   const look = () => {

@@ -127,7 +127,7 @@ class Faces:
     plastic: np.ndarray
     traction: np.ndarray
     pressure: np.ndarray = field(default=None)  # of the fluid; 0 without fluid
-    told: dict = field(default_factory=dict)  # history fields; 0 for joints without history
+    history: dict = field(default_factory=dict)  # history fields; 0 for joints without history
     bound: np.ndarray = field(default=None)  # of the shear traction, by friction and bond
     distance: np.ndarray = field(default=None)  # w_n - g
     strength: np.ndarray = field(default=None)  # tensile strength of a bond
@@ -143,12 +143,12 @@ class Faces:
     def on(self, which):
         """Returns a subset of the faces, without the bounds."""
         return Faces(self.time, **{f.name: getattr(self, f.name)[which] for f in fields(Faces)[1:8]},
-                     told={name: values[which] for name, values in self.told.items()})
+                     history={name: values[which] for name, values in self.history.items()})
 
     @classmethod
     def at_rest(cls, like):
         zeros = {f.name: np.zeros_like(getattr(like, f.name)) for f in fields(cls)[1:8]}
-        return cls(0, **zeros, told={name: np.zeros_like(values) for name, values in like.told.items()})
+        return cls(0, **zeros, history={name: np.zeros_like(values) for name, values in like.history.items()})
 
 
 def sorted_by_place(centre, fracture, extent):

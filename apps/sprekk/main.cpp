@@ -88,7 +88,7 @@ void declare(CLI::App& app, Arguments& arguments) {
                    "factor that the scene is run with; default 1, less for joints too "
                    "weak for it")
       ->check(between(1e-6, 1e6));
-  safety->add_option("--most", arguments.safety.most, "factor that is of interest; default 100")
+  safety->add_option("--max,--most", arguments.safety.maximum, "factor that is of interest; default 100")
       ->check(between(1, 1e6));
   auto* directory = app.add_subcommand("directory", "print the directory that run writes to without --output");
   for (auto* command : {run, check, point, network, safety, directory}) {
@@ -158,9 +158,9 @@ void find_safety(const Arguments& arguments, RCP<const Comm> comm) {
     for (const auto& line : found.states) fmt::print("{}\n", line);
   if (found.lost)
     fmt::print("factor of safety: {:.8g} (equilibrium at {:.10g}, none found at {:.10g})\n",
-               (found.least + *found.lost) / 2, found.least, *found.lost);
+               (found.stable + *found.lost) / 2, found.stable, *found.lost);
   else
-    fmt::print("factor of safety: at least {:.8g}\n", found.least);
+    fmt::print("factor of safety: at least {:.8g}\n", found.stable);
 }
 
 /// Runs the command; the exit status.

@@ -29,7 +29,7 @@ struct BoundModule {
   Module* operator->() const { return module.get(); }
   /// Returns whether the residual at x = 0 is the same at all times.
   bool has_constant_load() const { return !loads || loads->constant_load(); }
-  bool holds_bodies() const { return supporting && supporting->holds_bodies(); }
+  bool constrains_bodies() const { return supporting && supporting->constrains_bodies(); }
   /// Returns the state with the histories of this module.
   State at(State state) const {
     state.history = history;

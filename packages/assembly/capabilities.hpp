@@ -60,7 +60,7 @@ class Supporting {
  public:
   virtual ~Supporting() = default;
   /// Returns whether the forces of the module may support bodies.
-  virtual bool holds_bodies() const = 0;
+  virtual bool constrains_bodies() const = 0;
   /// Returns the supported unknowns at local nodes. No value: unknown; floating blocks of rock are then not detected.
   virtual std::optional<std::vector<contact::Support>> supports() const { return std::nullopt; }
 };
@@ -71,8 +71,9 @@ class ContactFaces {
   virtual ~ContactFaces() = default;
   /// Sets the contact states of owned fracture faces, [face].
   virtual void states(const State& state, std::vector<char>& states) const = 0;
-  /// Adds the contact constraints of the module at `state` to the grips, [owned fracture face].
-  virtual void grip(const State& state, std::vector<contact::Grip>& grips) const = 0;
+  /// Adds the contact constraints of the module at `state`, [owned fracture face].
+  virtual void add_contact_constraints(const State& state,
+                                       std::vector<contact::Constraint>& contact_constraints) const = 0;
 };
 
 /// Flux coefficients that an iteration may fix, see BlockProblem::lag().

@@ -15,7 +15,7 @@
 
 namespace sprekk::assembly {
 
-bool DirichletCondition::holds_at(const std::array<Real, 3>& x) const {
+bool DirichletCondition::applies_at(const std::array<Real, 3>& x) const {
   if (!within) return true;
   const auto& [lower, upper] = *within;
   Real size = 0;
@@ -77,7 +77,7 @@ Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
   const auto add = [&](GlobalIndex entity, GlobalIndex node, int condition, int component, const auto& face) {
     Held::Entry entry{entity < 0 ? -1 : entity * n_components + component, condition, component, place(mesh, node)};
     if (has_copies[node]) entry.side = centre_of(mesh, face) - entry.x;
-    if (conditions[condition].holds_at(entry.x)) collector.add(entry);
+    if (conditions[condition].applies_at(entry.x)) collector.add(entry);
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
     for (const auto& face : mesh.boundary_faces) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/expression.hpp"
-#include "contact/loose_pieces.hpp"
+#include "contact/floating_pieces.hpp"
 #include "fields/layout.hpp"
 #include "mesh/mesh.hpp"
 
@@ -26,7 +26,7 @@ struct DirichletCondition {
   int fracture = -1;  ///< restriction to the ends of this fracture; -1: faces, and fracture ends if no region is given
   /// Box that restricts the condition, lower and upper corner included. For fields on nodes only.
   std::optional<std::array<std::array<Real, 3>, 2>> within = {};
-  bool holds_at(const std::array<Real, 3>& x) const;
+  bool applies_at(const std::array<Real, 3>& x) const;
 };
 
 /// Unknowns of one field that conditions prescribe.

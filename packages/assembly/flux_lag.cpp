@@ -16,7 +16,7 @@ void FluxLag::stop() {
 
 Real FluxLag::update(fields::BlockProblem::Lag how, const Structure& structure, const State& state) {
   using Lag = fields::BlockProblem::Lag;
-  constexpr Real least = 1e-12;
+  constexpr Real minimum = 1e-12;
   std::vector<Real> found(structure.mesh->n_fracture_faces(),
                           -1);  // negative: no coefficient
   for (const auto& module : structure.modules)
@@ -24,7 +24,7 @@ Real FluxLag::update(fields::BlockProblem::Lag how, const Structure& structure, 
   Real here = -1;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (found[f] < 0) continue;
-    found[f] = std::log(std::max(found[f], least));
+    found[f] = std::log(std::max(found[f], minimum));
     here = std::max(here, logarithms_.started() ? std::abs(found[f] - logarithms_.y()[f]) : 0);
   }
   const Real farthest = base::max_over_ranks(structure.comm(), here);

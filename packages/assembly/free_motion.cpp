@@ -84,7 +84,7 @@ class Gram {
         const auto nodes = mesh::nodes_of_face(mesh_, face.cell, face.local_face);
         for (int k = 0; k < mesh::n_face_nodes(mesh_.shape); ++k)
           for (int i = 0; i < mesh_.dim(); ++i) {
-            if (!condition.values[i] || !condition.holds_at(mesh::point(mesh_, nodes[k]))) continue;
+            if (!condition.values[i] || !condition.applies_at(mesh::point(mesh_, nodes[k]))) continue;
             const RigidRow held = row(body, nodes[k], i);
             add(body, held, body, held, 1);
           }
@@ -149,7 +149,7 @@ std::vector<FreeMotion> free_motions(const GlobalMesh& mesh, const std::vector<D
   return result;
 }
 
-std::string unheld(const GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions) {
+std::string unconstrained(const GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions) {
   const auto motions = free_motions(mesh, conditions);
   if (motions.empty()) return "";
   const auto bodies = mesh::find_bodies(mesh);

@@ -21,6 +21,6 @@ std::vector<FreeMotion> free_motions(const mesh::GlobalMesh& mesh, const std::ve
 
 /// Returns an error message with a free body, its motions and a remedy; empty if all bodies are supported. Not
 /// collective.
-std::string unheld(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions);
+std::string unconstrained(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions);
 
 }  // namespace sprekk::assembly

@@ -15,13 +15,13 @@ namespace {
 using HostTable = decltype(base::to_host(ConstView<LocalIndex**>()));
 
 std::shared_ptr<const Writers> writers_of(const Stencil& rows, LocalIndex n_rows) {
-  const auto kept = rows.writers.lock();
-  if (kept && *kept) {
-    SPREKK_CHECK((*kept)->n_rows() == n_rows, "the graph has {} rows, required are {}", (*kept)->n_rows(), n_rows);
-    return *kept;
+  const auto saved = rows.writers.lock();
+  if (saved && *saved) {
+    SPREKK_CHECK((*saved)->n_rows() == n_rows, "the graph has {} rows, required are {}", (*saved)->n_rows(), n_rows);
+    return *saved;
   }
   const auto writers = std::make_shared<const Writers>(rows.first, n_rows);
-  if (kept) *kept = writers;
+  if (saved) *saved = writers;
   return writers;
 }
 

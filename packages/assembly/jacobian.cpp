@@ -99,18 +99,18 @@ void Jacobian::add_linear(const fields::BlockVector& ghosted, fields::BlockVecto
     for (int j = 0; j < linear_.n_blocks(); ++j) linear_.add_local_product(i, j, *ghosted[j], *r[i]);
 }
 
-std::shared_ptr<fields::KeptRows> Jacobian::share(int block, const RCP<const fields::Matrix>& J) {
-  if (auto kept = linear_.kept(block)) {
-    kept->restore(*J);
-    return kept;
+std::shared_ptr<fields::SavedRows> Jacobian::share(int block, const RCP<const fields::Matrix>& J) {
+  if (auto saved = linear_.saved(block)) {
+    saved->restore(*J);
+    return saved;
   }
   const auto& A = linear_(block, block);
   const bool constant = !A.is_null() && matrix_(block, block) == A && !structure_.unknowns[block].balance;
   if (!constant) return nullptr;
-  const auto kept = std::make_shared<fields::KeptRows>(J);
-  linear_.share(block, kept);
-  matrix_.share(block, kept);
-  return kept;
+  const auto saved = std::make_shared<fields::SavedRows>(J);
+  linear_.share(block, saved);
+  matrix_.share(block, saved);
+  return saved;
 }
 
 }  // namespace sprekk::assembly

@@ -24,7 +24,7 @@ class Jacobian {
   void add_linear(const fields::BlockVector& ghosted, fields::BlockVector& r) const;
   /// Stores a constant diagonal block in J, see fields::BlockProblem::share(). Blocks of balances are excluded: they
   /// depend on the step and are measured again in each step.
-  std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J);
+  std::shared_ptr<fields::SavedRows> share(int block, const RCP<const fields::Matrix>& J);
 
   const fields::BlockMatrix& matrix() const { return matrix_; }
   const fields::BlockMatrix& linear() const { return linear_; }

@@ -19,7 +19,7 @@ struct Description {
   std::string name, fingerprint;
   std::vector<Unknown> unknowns = {};
   Scales scales = {};
-  bool linear = false, holds_bodies = false;
+  bool linear = false, constrains_bodies = false;
   std::optional<std::vector<contact::Support>> supports = {};
   Real merit_weight = 0;  ///< weight of the module's own rows if not linear; see RowWeights::merit_weights
 };
@@ -37,7 +37,7 @@ class KernelModule final : public Module, public Supporting, public RowWeights {
 
   std::string name() const override { return description_.name; }
   std::string fingerprint() const override { return description_.fingerprint; }
-  bool holds_bodies() const override { return description_.holds_bodies; }
+  bool constrains_bodies() const override { return description_.constrains_bodies; }
   std::optional<std::vector<contact::Support>> supports() const override { return description_.supports; }
 
   Declaration declare(const mesh::Mesh&) const override {

@@ -3,7 +3,7 @@
 
 #include "assembly/geometry.hpp"
 #include "assembly/loop.hpp"
-#include "contact/grip.hpp"
+#include "contact/constraint.hpp"
 #include "fields/block_matrix.hpp"
 #include "fields/block_problem.hpp"
 #include "fields/layout.hpp"
@@ -69,7 +69,7 @@ struct Unknown {
   /// Values may exceed their scale by orders of magnitude. Their round-off counts in the rows of other fields.
   bool unbounded = false;
   /// For contact forces on faces: scale of the differences of both sides in their rows. The rows contain these
-  /// differences times contact::Grip::augmentation.
+  /// differences times contact::Constraint::augmentation.
   std::string augmented_by = "";
   Reactions reactions = {};
 };

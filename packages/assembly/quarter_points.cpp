@@ -39,11 +39,11 @@ class QuarterPoints {
 
  private:
   using Edge = mesh::CellGeometry::Edge;
-  static constexpr GlobalIndex stays = 0, kept = std::numeric_limits<GlobalIndex>::max();
+  static constexpr GlobalIndex stays = 0, fixed = std::numeric_limits<GlobalIndex>::max();
 
   GlobalIndex node(GlobalIndex cell, int k) const { return mesh_.cells[cell * n + k]; }
   GlobalIndex& state(GlobalIndex cell, const Edge& edge) { return state_[node(cell, edge.middle)]; }
-  bool moves(GlobalIndex cell, const Edge& edge) { return state(cell, edge) != stays && state(cell, edge) != kept; }
+  bool moves(GlobalIndex cell, const Edge& edge) { return state(cell, edge) != stays && state(cell, edge) != fixed; }
   Vector at(GlobalIndex node) const {
     Vector x{};
     std::copy_n(&mesh_.coordinates[node * dim], dim, x.begin());
@@ -58,8 +58,8 @@ class QuarterPoints {
     for (GlobalIndex cell = 0; cell < mesh_.n_cells(); ++cell) {
       const bool collapses = has_face_of_tips([&](int corner) { return tip(cell, corner); });
       for (const auto& edge : edges_) {
-        if (collapses) state(cell, edge) = kept;
-        if (tip(cell, edge.from) == tip(cell, edge.to) || state(cell, edge) == kept) continue;
+        if (collapses) state(cell, edge) = fixed;
+        if (tip(cell, edge.from) == tip(cell, edge.to) || state(cell, edge) == fixed) continue;
         state(cell, edge) = 1 + alike_[node(cell, tip(cell, edge.from) ? edge.from : edge.to)];
       }
     }
@@ -123,7 +123,7 @@ class QuarterPoints {
     for (GlobalIndex cell : cells_) {
       if (!is_moved(cell) || is_valid(cell)) continue;
       any = true;
-      for (const auto& edge : edges_) state(cell, edge) = kept;
+      for (const auto& edge : edges_) state(cell, edge) = fixed;
     }
     if (!alike_.any(any)) return false;
     alike_.to_largest(state_);
@@ -150,7 +150,7 @@ class QuarterPoints {
   const std::vector<Real> before_;  // original coordinates
   const std::vector<Edge> edges_;
   mesh::AlikeNodes alike_;
-  std::vector<GlobalIndex> state_;  // [node on an edge] stays, kept, or 1 + the set of the tip to which it moves
+  std::vector<GlobalIndex> state_;  // [node on an edge] stays, fixed, or 1 + the set of the tip to which it moves
   std::vector<GlobalIndex> cells_;  // cells with moved edges
 };
 

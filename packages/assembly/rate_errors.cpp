@@ -21,11 +21,11 @@ Real find_rate(const View<Real**>& x, const View<Real**>& old, const View<Real**
   const int width = static_cast<int>(x.extent(1));
   Kokkos::parallel_reduce(
       "rate", Kokkos::RangePolicy<Execution>(0, x.extent(0)),
-      KOKKOS_LAMBDA(int e, Real& most) {
+      KOKKOS_LAMBDA(int e, Real& maximum) {
         for (int k = 0; k < width; ++k) {
           rate(e, k) = (x(e, k) - old(e, k)) / dt;
           const Real change = x(e, k) > start(e, k) ? x(e, k) - start(e, k) : start(e, k) - x(e, k);
-          if (change > most) most = change;
+          if (change > maximum) maximum = change;
         }
       },
       Kokkos::Max<Real>(largest));
@@ -58,33 +58,33 @@ RateErrors::RateErrors(RCP<const Comm> comm, const std::vector<fields::Layout>& 
     if (!balances[b]) continue;
     const auto& field = layouts[b].field();
     const auto x = entries(*start[b], field.n_components);
-    const auto like = [&](bool kept) { return View<Real**>("kept", kept ? x.extent(0) : 0, x.extent(1)); };
-    Kept kept{static_cast<int>(b), field, like(true), like(true), like(true), like(second_order_)};
-    Kokkos::deep_copy(kept.start, x);
-    Kokkos::deep_copy(kept.old, x);
-    kept.n = static_cast<Real>(layouts[b].owned()->getGlobalNumElements());
-    if (kept.n > 0) blocks_.push_back(std::move(kept));
+    const auto like = [&](bool rates) { return View<Real**>("saved", rates ? x.extent(0) : 0, x.extent(1)); };
+    BlockRates rates{static_cast<int>(b), field, like(true), like(true), like(true), like(second_order_)};
+    Kokkos::deep_copy(rates.start, x);
+    Kokkos::deep_copy(rates.old, x);
+    rates.n = static_cast<Real>(layouts[b].owned()->getGlobalNumElements());
+    if (rates.n > 0) blocks_.push_back(std::move(rates));
   }
 }
 
 void RateErrors::begin(const fields::BlockVector& x) {
-  for (const auto& kept : blocks_) Kokkos::deep_copy(kept.old, entries(*x[kept.block], kept.field.n_components));
+  for (const auto& rates : blocks_) Kokkos::deep_copy(rates.old, entries(*x[rates.block], rates.field.n_components));
 }
 
 void RateErrors::forget(bool abrupt) {
   n_rates_ = abrupt ? -1 : 0;
-  for (auto& kept : blocks_) kept.lasts = kept.sum = 0;
+  for (auto& rates : blocks_) rates.lasts = rates.sum = 0;
 }
 
 fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bool second_order,
-                                       const std::vector<Real>& least) {
+                                       const std::vector<Real>& minimum) {
   fields::StepErrors errors;
   const bool known = n_rates_ > (second_order ? 1 : 0);
   std::vector<Real> squares, largest;
-  for (auto& kept : blocks_) {
-    const auto now = entries(*x[kept.block], kept.field.n_components);
+  for (auto& rates : blocks_) {
+    const auto now = entries(*x[rates.block], rates.field.n_components);
     const View<Real**> rate("rate", now.extent(0), now.extent(1));
-    largest.push_back(find_rate(now, kept.old, kept.start, dt, rate));
+    largest.push_back(find_rate(now, rates.old, rates.start, dt, rate));
     Real a = 1 / (dt + dt_), b = -a, c = 0;  // f_2
     if (second_order && known) {
       const Real before = 1 / (dt_ + dt_before_), all = dt + dt_ + dt_before_;
@@ -93,34 +93,34 @@ fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bo
       c = before / all;
     }
     squares.push_back(square_of_sum(1, rate, 0, rate, 0, rate));
-    squares.push_back(square_of_sum(a, rate, b, kept.rate, c, second_order && known ? kept.rate_before : kept.rate));
-    if (second_order_) Kokkos::deep_copy(kept.rate_before, kept.rate);
-    Kokkos::deep_copy(kept.rate, rate);
-    Kokkos::deep_copy(kept.old, now);
+    squares.push_back(square_of_sum(a, rate, b, rates.rate, c, second_order && known ? rates.rate_before : rates.rate));
+    if (second_order_) Kokkos::deep_copy(rates.rate_before, rates.rate);
+    Kokkos::deep_copy(rates.rate, rate);
+    Kokkos::deep_copy(rates.old, now);
   }
   squares = base::sum_over_ranks(*comm_, squares);
   largest = base::max_over_ranks(*comm_, largest);
   const Real w = dt_ > 0 ? dt / dt_ : 1;
   const Real constant = second_order ? (1 + w) * (1 + w) / (w * (1 + 2 * w)) * dt * dt * dt : dt * dt;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    auto& kept = blocks_[k];
-    const Real speed = std::sqrt(squares[2 * k] / kept.n), bent = std::sqrt(squares[2 * k + 1] / kept.n);
-    const Real shrinks = n_rates_ > 0 && kept.speed > 0 ? std::min<Real>(1, speed / kept.speed) : 1;
-    const Real growth = n_rates_ > 0 && kept.largest > 0 && elapsed_ > 0
-                            ? std::log(std::max<Real>(1, largest[k] / kept.largest)) / std::log(1 + dt / elapsed_)
+    auto& rates = blocks_[k];
+    const Real speed = std::sqrt(squares[2 * k] / rates.n), bent = std::sqrt(squares[2 * k + 1] / rates.n);
+    const Real shrinks = n_rates_ > 0 && rates.speed > 0 ? std::min<Real>(1, speed / rates.speed) : 1;
+    const Real growth = n_rates_ > 0 && rates.largest > 0 && elapsed_ > 0
+                            ? std::log(std::max<Real>(1, largest[k] / rates.largest)) / std::log(1 + dt / elapsed_)
                             : 0;
     const Real ahead = std::clamp<Real>(duration_ / (elapsed_ + dt), 1, 10);
-    kept.largest = std::max(kept.largest, largest[k]);
-    const Real size = std::max(kept.largest * std::pow(ahead, std::min<Real>(growth, 0.5)), least[kept.block]);
-    kept.lasts = shrinks * kept.lasts + dt;
-    kept.speed = speed;
+    rates.largest = std::max(rates.largest, largest[k]);
+    const Real size = std::max(rates.largest * std::pow(ahead, std::min<Real>(growth, 0.5)), minimum[rates.block]);
+    rates.lasts = shrinks * rates.lasts + dt;
+    rates.speed = speed;
     const Real own = known ? constant * bent : 0;
-    kept.sum = shrinks * kept.sum + own;
+    rates.sum = shrinks * rates.sum + own;
     if (!known)
-      errors.push_back({kept.field.name, 0, fields::StepError::unknown});
+      errors.push_back({rates.field.name, 0, fields::StepError::unknown});
     else
-      errors.push_back({kept.field.name, size > 0 ? std::sqrt(kept.sum * own * kept.lasts / dt) / size : 0,
-                        (second_order ? 2 : 1) + dt / kept.lasts});
+      errors.push_back({rates.field.name, size > 0 ? std::sqrt(rates.sum * own * rates.lasts / dt) / size : 0,
+                        (second_order ? 2 : 1) + dt / rates.lasts});
   }
   dt_before_ = dt_;
   dt_ = dt;
@@ -131,19 +131,19 @@ fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bo
 
 std::vector<std::pair<fields::Field, View<Real**>>> RateErrors::histories() const {
   std::vector<std::pair<fields::Field, View<Real**>>> all;
-  const auto add = [&](const std::string& what, const Kept& kept, const View<Real**>& values) {
-    all.push_back({{what + kept.field.name, kept.field.entity, kept.field.n_components, ""}, values});
+  const auto add = [&](const std::string& what, const BlockRates& rates, const View<Real**>& values) {
+    all.push_back({{what + rates.field.name, rates.field.entity, rates.field.n_components, ""}, values});
   };
-  for (const auto& kept : blocks_) {
-    add("rate of ", kept, kept.rate);
-    if (second_order_) add("rate before of ", kept, kept.rate_before);
+  for (const auto& rates : blocks_) {
+    add("rate of ", rates, rates.rate);
+    if (second_order_) add("rate before of ", rates, rates.rate_before);
   }
   return all;
 }
 
 std::vector<Real> RateErrors::memory() const {
   std::vector<Real> numbers = {static_cast<Real>(n_rates_), dt_, dt_before_, elapsed_};
-  for (const auto& kept : blocks_) numbers.insert(numbers.end(), {kept.largest, kept.lasts, kept.speed, kept.sum});
+  for (const auto& rates : blocks_) numbers.insert(numbers.end(), {rates.largest, rates.lasts, rates.speed, rates.sum});
   return numbers;
 }
 

@@ -29,8 +29,9 @@ class RateErrors {
   /// Sets the state x at which the next step begins.
   void begin(const fields::BlockVector& x);
   /// Returns the errors of a step to x. `second_order`: the step was made by BDF2. The errors are unknown while earlier
-  /// rates are missing. Changes below `least` [block] are treated as zero. Collective.
-  fields::StepErrors of_step(const fields::BlockVector& x, Real dt, bool second_order, const std::vector<Real>& least);
+  /// rates are missing. Changes below `minimum` [block] are treated as zero. Collective.
+  fields::StepErrors of_step(const fields::BlockVector& x, Real dt, bool second_order,
+                             const std::vector<Real>& minimum);
   /// Restarts the estimate where loads change their course. The persistence time starts again at zero. If `abrupt`, the
   /// state may be discontinuous at the start of the first step, and the rate of this step is unknown.
   void forget(bool abrupt);
@@ -42,7 +43,7 @@ class RateErrors {
   void resume(const std::vector<Real>& memory);
 
  private:
-  struct Kept {  // data of a block
+  struct BlockRates {  // data of a block
     int block;
     fields::Field field;
     View<Real**> start, old, rate, rate_before;       // [owned entity, component]
@@ -50,7 +51,7 @@ class RateErrors {
     Real largest = 0, lasts = 0, speed = 0, sum = 0;  // change since the start; tau; |r|; E
   };
   RCP<const Comm> comm_;
-  std::vector<Kept> blocks_;
+  std::vector<BlockRates> blocks_;
   bool second_order_;
   Real duration_, elapsed_ = 0;  // length of the run, time of all steps so far
   int n_rates_ = -1;             // number of known rates; -1: the first step gives none

@@ -7,7 +7,7 @@ namespace sprekk::assembly {
 namespace {
 
 constexpr int n_unlimited = 4;  // number of steps before step limits apply
-constexpr Real steepest = -100, most_down = 2;
+constexpr Real steepest = -100, max_down = 2;
 constexpr Real share = 0.25, largest_share = 0.8, share_of_sign_changes = 0.6;
 constexpr Real shorter = 0.7, longer = 1.2, shortest = 0.02;
 
@@ -15,10 +15,10 @@ constexpr Real shorter = 0.7, longer = 1.2, shortest = 0.02;
 
 Real Relaxation::Number::step(Real residual, Real moved, Real change, bool limited) {
   const bool turned = moved * residual < 0;
-  const Real kept = largest_share - (largest_share - share) * std::pow(share_of_sign_changes, n_sign_changes);
-  const Real remembered = turned ? 2 * slope - 0.5 : kept * slope;
+  const Real retained = largest_share - (largest_share - share) * std::pow(share_of_sign_changes, n_sign_changes);
+  const Real remembered = turned ? 2 * slope - 0.5 : retained * slope;
   slope = std::clamp(std::min(moved != 0 ? change / moved : 0, remembered), steepest, Real(0));
-  const Real step = std::max(residual / (1 - slope), -most_down);
+  const Real step = std::max(residual / (1 - slope), -max_down);
   if (!limited) return step;
   n_sign_changes += turned;
   step_limit = turned ? std::max(shorter * step_limit, shortest) : std::min(longer * step_limit, Real(1));

@@ -70,10 +70,10 @@ void RowSizes::update(const State& state) {
   sized_ = true;
 }
 
-void RowSizes::set_augmentation(int block, const std::vector<contact::Grip>& grips) {
+void RowSizes::set_augmentation(int block, const std::vector<contact::Constraint>& contact_constraints) {
   const auto constant = diagonals_[block]->getLocalViewHost(Tpetra::Access::OverwriteAll);
   for (std::size_t i = 0; i < constant.extent(0); ++i)
-    constant(i, 0) = grips[i / structure_.blocks[block].n_components].augmentation;
+    constant(i, 0) = contact_constraints[i / structure_.blocks[block].n_components].augmentation;
 }
 
 RowSizes::Type RowSizes::type(int block) const {
@@ -161,10 +161,10 @@ struct RowMeasure {
   ConstView<Real*> present;   ///< diagonal of the last Jacobian
   View<Real*> others;         ///< round-off of other blocks; empty: zero
   Real unknown_scale, row_scale;
-  Real driving;     ///< balances: typical difference of the unknown
-  Real rounding;    ///< round-off of the unknown
-  Real stored;      ///< round-off of the storage
-  Real most_noise;  ///< limit of the noise, relative to the scale
+  Real driving;    ///< balances: typical difference of the unknown
+  Real rounding;   ///< round-off of the unknown
+  Real stored;     ///< round-off of the storage
+  Real max_noise;  ///< limit of the noise, relative to the scale
   bool balance, advected;
 
   KOKKOS_INLINE_FUNCTION Real scale(int i) const {
@@ -176,7 +176,7 @@ struct RowMeasure {
   KOKKOS_INLINE_FUNCTION Real noise(int i) const {
     if (prescribed(i)) return 0;
     const Real noise = rounding * present(i) + stored + (others.extent(0) > 0 ? others(i) : 0);
-    const Real limit = most_noise * scale(i);
+    const Real limit = max_noise * scale(i);
     return noise > limit ? limit : noise;
   }
   KOKKOS_INLINE_FUNCTION Real value(int i) const {
@@ -189,8 +189,8 @@ struct RowMeasure {
 
 std::vector<fields::Measure> RowSizes::measures(const BlockVector& x, const BlockVector& r) const {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
-  constexpr Real most_noise = 1e-5;   // a solution that diverges until round-off hides the loads has not converged
-  constexpr Real least_range = 1e-4;  // relative to the level of a balanced quantity
+  constexpr Real max_noise = 1e-5;  // a solution that diverges until round-off hides the loads has not converged
+  constexpr Real min_range = 1e-4;  // relative to the level of a balanced quantity
   const auto ranges = ranges_of_balances(structure_.comm(), structure_.unknowns, x);
   std::vector<fields::Measure> measures;
   for (int b = 0; b < structure_.n_blocks(); ++b) {
@@ -207,12 +207,12 @@ std::vector<fields::Measure> RowSizes::measures(const BlockVector& x, const Bloc
                        .driving = 0,
                        .rounding = rounding(x, row == Type::augmented ? unknown.augmented_by : unknown.scale),
                        .stored = 0,
-                       .most_noise = row == Type::bulk ? most_noise : infinity,
+                       .max_noise = row == Type::bulk ? max_noise : infinity,
                        .balance = row == Type::balance,
                        .advected = block.advected};
     if (row == Type::balance)  // differences of the unknown drive its fluxes: errors are relative to these
       measure.driving =
-          std::min(block.kinematic_scale, std::max(ranges.at(unknown.scale), least_range * block.kinematic_scale));
+          std::min(block.kinematic_scale, std::max(ranges.at(unknown.scale), min_range * block.kinematic_scale));
     for (const auto& term : unknown.row)
       if (term.per_step) measure.stored += term.factor * rounding(x, term.scale) / dt_;
     measure.others = rounding_of_others(b, x);

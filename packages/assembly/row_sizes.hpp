@@ -25,7 +25,7 @@ class RowSizes {
   /// Finds the diagonals and Schur complements of the Jacobian at a state.
   void update(const State& state);
   /// Sets the diagonals of an augmented block to the augmentation constants.
-  void set_augmentation(int block, const std::vector<contact::Grip>& grips);
+  void set_augmentation(int block, const std::vector<contact::Constraint>& contact_constraints);
 
   /// Returns the largest relative residual of each block on this rank. Collective.
   std::vector<fields::Measure> measures(const fields::BlockVector& x, const fields::BlockVector& r) const;

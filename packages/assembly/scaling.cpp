@@ -10,7 +10,7 @@ namespace sprekk::assembly {
 Scaling::Scaling(const Structure& structure) {
   for (const auto& module : structure.modules) {
     const auto& declaration = module.declaration;
-    for (const auto& [name, least] : declaration.scales) scales_[name] = std::max(scales_[name], least);
+    for (const auto& [name, minimum] : declaration.scales) scales_[name] = std::max(scales_[name], minimum);
     relations_.insert(relations_.end(), declaration.relations.begin(), declaration.relations.end());
   }
   const auto check = [&](const std::string& name) {
@@ -62,8 +62,8 @@ void Scaling::apply_relations() {
   constexpr Real rounding = 1e-14;
   for (std::size_t pass = 0; pass < scales_.size(); ++pass)
     for (const auto& [larger, factor, than] : relations_)
-      if (const Real least = factor * scales_.at(than); least > (1 + rounding) * scales_.at(larger))
-        scales_.at(larger) = least;
+      if (const Real minimum = factor * scales_.at(than); minimum > (1 + rounding) * scales_.at(larger))
+        scales_.at(larger) = minimum;
 }
 
 void Scaling::restore(const Scales& saved) {

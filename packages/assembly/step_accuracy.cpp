@@ -29,9 +29,9 @@ StepAccuracy::StepAccuracy(const Structure& structure, Rates::Scheme scheme, con
 
 void StepAccuracy::commit(const BlockVector& x, Real dt, const State& state) {
   constexpr Real noise = 1e-8;  // relative limit for changes, above the errors of linear solves and Newton's method
-  std::vector<Real> least;
-  for (const auto& block : structure_.blocks) least.push_back(noise * block.kinematic_scale);
-  auto errors = rate_errors_.of_step(x, dt, state.before > 0, least);
+  std::vector<Real> minimum;
+  for (const auto& block : structure_.blocks) minimum.push_back(noise * block.kinematic_scale);
+  auto errors = rate_errors_.of_step(x, dt, state.before > 0, minimum);
   const auto owned = rows_of(committed_x_);
   for (const auto& module : structure_.modules) {
     if (!module.errors) continue;

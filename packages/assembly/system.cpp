@@ -22,7 +22,7 @@ namespace {
 /// Returns the blocks of contact. Bodies that modules support in an unknown way have no motion there.
 contact::Blocks contact_blocks(const Structure& structure) {
   const bool held = std::any_of(structure.modules.begin(), structure.modules.end(),
-                                [](const auto& m) { return m.holds_bodies() && !m.supporting->supports(); });
+                                [](const auto& m) { return m.constrains_bodies() && !m.supporting->supports(); });
   contact::Blocks found;
   for (int b = 0; b < structure.n_blocks(); ++b) {
     const auto& unknown = structure.unknowns[b];
@@ -68,17 +68,17 @@ std::vector<contact::Support> System::supports_of(int block) const {
 void System::watch_contact() {
   const auto mesh = structure_.mesh;
   const int motion = contact_blocks_.motion;
-  std::unique_ptr<contact::LoosePieces> pieces;
+  std::unique_ptr<contact::FloatingPieces> pieces;
   if (motion >= 0)
-    pieces = std::make_unique<contact::LoosePieces>(mesh, structure_.layouts[motion], supports_of(motion),
-                                                    cell_volumes(*mesh));
-  const bool loose = pieces && pieces->possible();
-  if (!loose && contact_blocks_.multiplier < 0) return;
-  if (loose) pieces->set_stiffness(row_sizes_->diagonal(motion));
+    pieces = std::make_unique<contact::FloatingPieces>(mesh, structure_.layouts[motion], supports_of(motion),
+                                                       cell_volumes(*mesh));
+  const bool floating = pieces && pieces->possible();
+  if (!floating && contact_blocks_.multiplier < 0) return;
+  if (floating) pieces->set_stiffness(row_sizes_->diagonal(motion));
   contact_ = std::make_unique<contact::Contact>(static_cast<contact::Equations&>(*this), mesh, contact_blocks_,
                                                 std::move(pieces));
   contact_->remember(initial());
-  if (loose && contact_->pieces()->contrast() > 10 && linear_part_is_invariant())
+  if (floating && contact_->pieces()->contrast() > 10 && linear_part_is_invariant())
     contact_->remove_rigid_motions(structure_.layouts[motion]);
 }
 
@@ -191,14 +191,14 @@ void System::jacobian(const Evaluation& x) {
   const auto there = at(x);
   jacobian_.assemble(there);
   row_sizes_->update(there);
-  if (contact_ && contact_->pieces()) contact_->find_loose(grips_at(there));
+  if (contact_ && contact_->pieces()) contact_->find_floating(contact_constraints_at(there));
 }
 
 void System::commit(const Evaluation& x) {
   const auto there = at(x);
   if (contact_ && contact_->pieces()) {
     // before the histories change: afterwards, sliding faces are at the limit of sticking
-    contact_->find_loose(grips_at(there));
+    contact_->find_floating(contact_constraints_at(there));
     contact_->remember(x.x());
   }
   BlockVector end;
@@ -214,7 +214,8 @@ void System::commit(const Evaluation& x) {
 
 std::vector<Measure> System::measures(const Evaluation& x, const BlockVector& r) {
   const auto there = at(x);
-  if (contact_blocks_.multiplier >= 0) row_sizes_->set_augmentation(contact_blocks_.multiplier, grips_at(there));
+  if (contact_blocks_.multiplier >= 0)
+    row_sizes_->set_augmentation(contact_blocks_.multiplier, contact_constraints_at(there));
   auto measures = row_sizes_->measures(x.x(), r);
   for (const auto& module : structure_.modules) {
     if (!module.errors) continue;
@@ -237,14 +238,16 @@ Real System::lag(Lag how, const Evaluation& x) {
   return 0;
 }
 
-std::vector<contact::Grip> System::grips_at(const State& state) const {
-  std::vector<contact::Grip> grips(structure_.mesh->n_owned_fracture_faces);
+std::vector<contact::Constraint> System::contact_constraints_at(const State& state) const {
+  std::vector<contact::Constraint> contact_constraints(structure_.mesh->n_owned_fracture_faces);
   for (const auto& module : structure_.modules)
-    if (module.contact) module.contact->grip(module.at(state), grips);
-  return grips;
+    if (module.contact) module.contact->add_contact_constraints(module.at(state), contact_constraints);
+  return contact_constraints;
 }
 
-std::vector<contact::Grip> System::grips(const Evaluation& x) { return grips_at(at(x)); }
+std::vector<contact::Constraint> System::contact_constraints(const Evaluation& x) {
+  return contact_constraints_at(at(x));
+}
 
 contact::Sizes System::sizes() const {
   const auto& [motion, multiplier] = contact_blocks_;

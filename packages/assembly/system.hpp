@@ -35,7 +35,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void raw_residual(const fields::Evaluation& x, fields::BlockVector& r) override;
   void jacobian(const fields::Evaluation& x) override;
   const fields::BlockMatrix& matrix() const override { return jacobian_.matrix(); }
-  std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J) override {
+  std::shared_ptr<fields::SavedRows> share(int block, const RCP<const fields::Matrix>& J) override {
     return jacobian_.share(block, J);
   }
   bool stores() const override { return structure_.coupled; }
@@ -102,7 +102,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void forget_rates(bool abrupt) { accuracy_->forget(abrupt); }
 
   /// Returns the contact constraints, [owned fracture face]. Collective.
-  std::vector<contact::Grip> grips(const fields::Evaluation& x) override;
+  std::vector<contact::Constraint> contact_constraints(const fields::Evaluation& x) override;
 
   const mesh::Mesh& mesh() const { return *structure_.mesh; }
   const std::vector<BoundModule>& modules() const { return structure_.modules; }
@@ -136,10 +136,10 @@ class System : public fields::BlockProblem, private contact::Equations {
   void watch_contact();
   std::vector<contact::Support> supports_of(int block) const;
   bool linear_part_is_invariant() const;
-  std::vector<contact::Grip> grips_at(const State& state) const;
+  std::vector<contact::Constraint> contact_constraints_at(const State& state) const;
   std::vector<char> states(const fields::Evaluation& x) override;
   contact::Sizes sizes() const override;
-  void begin_anew() override { row_sizes_->begin_solve(); }
+  void restart_row_sizes() override { row_sizes_->begin_solve(); }
 
   Structure structure_;
   Scaling scaling_;

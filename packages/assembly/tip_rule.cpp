@@ -98,14 +98,14 @@ int neighbour(const std::vector<Point>& corners, int a, int axis) {
 /// Returns the tips with most neighbouring tips. Each is the common corner of all simplices of a cut.
 std::vector<int> centres_of(const std::vector<Point>& corners, const std::vector<char>& tips, int dim) {
   std::vector<int> best;
-  int most = -1;
+  int maximum = -1;
   for (int a = 0; a < static_cast<int>(corners.size()); ++a) {
     if (!tips[a]) continue;
     int n = 0;
     for (int axis = 0; axis < dim; ++axis) n += tips[neighbour(corners, a, axis)];
-    if (n > most) best.clear();
-    if (n >= most) best.push_back(a);
-    most = std::max(n, most);
+    if (n > maximum) best.clear();
+    if (n >= maximum) best.push_back(a);
+    maximum = std::max(n, maximum);
   }
   return best;
 }

@@ -86,13 +86,13 @@ std::vector<T> gather_over_ranks(const Comm& comm, std::vector<T> here) {
   std::vector<int> lengths(comm.getSize());
   const int n = static_cast<int>(here.size());
   Teuchos::gatherAll(comm, 1, &n, comm.getSize(), lengths.data());
-  const int most = *std::max_element(lengths.begin(), lengths.end());
-  if (most == 0) return {};
-  here.resize(most);
-  std::vector<T> padded(static_cast<std::size_t>(most) * comm.getSize()), all;
-  Teuchos::gatherAll(comm, most, here.data(), static_cast<int>(padded.size()), padded.data());
+  const int maximum = *std::max_element(lengths.begin(), lengths.end());
+  if (maximum == 0) return {};
+  here.resize(maximum);
+  std::vector<T> padded(static_cast<std::size_t>(maximum) * comm.getSize()), all;
+  Teuchos::gatherAll(comm, maximum, here.data(), static_cast<int>(padded.size()), padded.data());
   for (int r = 0; r < comm.getSize(); ++r)
-    all.insert(all.end(), &padded[std::size_t(most) * r], &padded[std::size_t(most) * r] + lengths[r]);
+    all.insert(all.end(), &padded[std::size_t(maximum) * r], &padded[std::size_t(maximum) * r] + lengths[r]);
   return all;
 }
 

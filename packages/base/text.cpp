@@ -113,11 +113,11 @@ std::string number_text(Real value) {
 }
 
 std::string quoted_list(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 40;  // in a message; the most similar name is given separately
+  constexpr std::size_t maximum = 40;  // in a message; the most similar name is given separately
   std::string text;
-  for (std::size_t k = 0; k < std::min(most, names.size()); ++k)
+  for (std::size_t k = 0; k < std::min(maximum, names.size()); ++k)
     text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shortened(names[k]));
-  return names.size() <= most ? text : fmt::format("{} and {} more", text, names.size() - most);
+  return names.size() <= maximum ? text : fmt::format("{} and {} more", text, names.size() - maximum);
 }
 
 std::string shortened(const std::string& text) {
@@ -174,8 +174,8 @@ std::optional<std::size_t> where_not_utf8(std::string_view text) {
       if (byte(i + k) >> 6 != 2) return i;
       code = code << 6 | (byte(i + k) & 0x3f);
     }
-    constexpr unsigned least[] = {0, 0x80, 0x800, 0x10000};
-    if (n < 0 || code < least[n] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return i;
+    constexpr unsigned minimum[] = {0, 0x80, 0x800, 0x10000};
+    if (n < 0 || code < minimum[n] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return i;
     i += n + 1;
   }
   return std::nullopt;

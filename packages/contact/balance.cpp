@@ -15,17 +15,17 @@ RCP<const fields::Vector> Contact::proximal(int block) const {
                                                               : Teuchos::null;
 }
 
-std::string Contact::loose() const {
+std::string Contact::floating() const {
   if (!pieces_ || !pieces_->any()) return "";
   return pieces_->describe(driven_.q.empty() ? pieces_->first() : driven_) +
          (nearest_known_ ? "" : " (the place nearest to the last one was not found)");
 }
 
-void Contact::find_loose(std::vector<Grip> grips) {
+void Contact::find_floating(std::vector<Constraint> constraints) {
   if (!pieces_) return;
-  if (regularisation_.tether > 0)
-    for (auto& grip : grips) grip.held = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  pieces_->find(grips);
+  if (regularisation_.proximal > 0)
+    for (auto& constraint : constraints) constraint.held = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  pieces_->find(constraints);
   driven_ = {};
 }
 
@@ -34,16 +34,16 @@ namespace {
 constexpr int n_sweeps = 2;
 /// Smallest unbalanced force along a mode, relative to the force scale. Smaller forces count as round-off. The limit is
 /// below the tolerance of Newton's method: forces between the two would otherwise prevent convergence.
-constexpr Real least_force = 1e-12;
+constexpr Real min_force = 1e-12;
 
 }  // namespace
 
 /// Returns the work of unbalanced forces at x on a motion, [group]. It is negative if the motion follows the force.
 /// Collective.
-std::vector<Real> Contact::work(const LoosePieces::Motion& motion, const Evaluation& x) {
+std::vector<Real> Contact::work(const FloatingPieces::Motion& motion, const Evaluation& x) {
   auto r = fields::create_like(x.x());
   equations_.residual(x, r);
-  return pieces_->work(motion, *r[blocks_.motion], equations_.grips(x));
+  return pieces_->work(motion, *r[blocks_.motion], equations_.contact_constraints(x));
 }
 
 /// Replaces the share of free motions in a step. Without resistance, the proximal term alone limits the motion: the
@@ -57,12 +57,12 @@ std::string Contact::balance(const Evaluation& x, BlockVector& dx, Evaluation& e
   end = {};
   const auto unresisted = balance_along(motion, x.x(), dx, end, false);
   for (int sweep = 0; sweep < n_sweeps && unresisted.empty(); ++sweep)
-    for (int k = 0; k < pieces_->most_modes(); ++k) balance_along(pieces_->mode(k), x.x(), dx, end, true);
+    for (int k = 0; k < pieces_->max_modes(); ++k) balance_along(pieces_->mode(k), x.x(), dx, end, true);
   return unresisted;
 }
 
 /// Evaluates residuals, which are inexpensive compared with the Newton steps saved. All groups share the evaluations.
-std::string Contact::balance_along(const LoosePieces::Motion& motion, const BlockVector& x, BlockVector& dx,
+std::string Contact::balance_along(const FloatingPieces::Motion& motion, const BlockVector& x, BlockVector& dx,
                                    Evaluation& end, bool mode) {
   const int n = pieces_->n_groups();
   const auto after = [&](const std::vector<Real>& s) {
@@ -82,7 +82,7 @@ std::string Contact::balance_along(const LoosePieces::Motion& motion, const Bloc
   for (int g = 0; g < n; ++g) {
     const Real largest = motion.largest[g];
     if (mode && start[g] > 0) sign[g] = -1;
-    const bool round_off = mode ? !(std::abs(start[g]) > least_force * force * largest) : !(largest > 1e-8 * length);
+    const bool round_off = mode ? !(std::abs(start[g]) > min_force * force * largest) : !(largest > 1e-8 * length);
     searches.emplace_back(round_off ? 0 : sign[g] * start[g], 0.1 * length / largest, reach / largest);
   }
   const auto all_done = [&] { return std::all_of(searches.begin(), searches.end(), [](auto& a) { return a.done(); }); };

@@ -20,14 +20,14 @@ constexpr Real noticeable = 1e-4;  ///< smallest change of jumps and tractions, 
 constexpr int n_classes = 25;      ///< number of stiffness classes, decades
 enum Sum { worked, of_constant, moved, loaded, noticed, area, n_sums };
 
-bool is_open(const Grip& grip) { return grip.held == std::array<mesh::Vector, 3>{}; }
+bool is_open(const Constraint& constraint) { return constraint.held == std::array<mesh::Vector, 3>{}; }
 
 }  // namespace
 
 /// Returns the stiffness class of a face: decades relative to the stiffest rock, E = sigma L / u from the scales.
-int Contact::calibration_class(const Grip& grip) const {
+int Contact::calibration_class(const Constraint& constraint) const {
   const auto sizes = equations_.sizes();
-  const Real decade = std::round(std::log10(grip.modulus * sizes.gap / (sizes.multiplier * sizes.extent)));
+  const Real decade = std::round(std::log10(constraint.modulus * sizes.gap / (sizes.multiplier * sizes.extent)));
   return static_cast<int>(std::clamp<Real>(decade + n_classes / 2, 0, n_classes - 1));
 }
 
@@ -41,13 +41,13 @@ bool Contact::calibrate(const fields::Evaluation& x, bool first) {
   if (blocks_.multiplier < 0) return false;
   calibration_.resize(n_classes, 0);
   if (std::find(calibration_.begin(), calibration_.end(), 0) == calibration_.end()) return false;
-  const auto before = std::exchange(grips_, equations_.grips(x));
+  const auto before = std::exchange(constraints_, equations_.contact_constraints(x));
   if (first) return false;
   const auto sizes = equations_.sizes();
   const Real stress = sizes.multiplier, length = sizes.gap;
   std::array<std::array<Real, n_sums>, n_classes> here{};
-  for (std::size_t f = 0; f < grips_.size(); ++f) {
-    const auto& now = grips_[f];
+  for (std::size_t f = 0; f < constraints_.size(); ++f) {
+    const auto& now = constraints_[f];
     auto& sums = here[calibration_class(now)];
     const Real size = mesh_->fracture_faces[f].area;
     sums[area] += size;
@@ -76,17 +76,17 @@ bool Contact::calibrate(const fields::Evaluation& x, bool first) {
     calibration_[k] = stays ? 1 : ratio;
     corrected |= !stays;
   }
-  if (corrected) correct_augmentation(grips_);
+  if (corrected) correct_augmentation(constraints_);
   return corrected;
 }
 
 /// Sets the factors of all faces from their classes.
-void Contact::correct_augmentation(const std::vector<Grip>& grips) {
+void Contact::correct_augmentation(const std::vector<Constraint>& constraints) {
   SPREKK_CHECK(calibration_.size() == n_classes, "the calibration has {} factors, there must be {}",
                calibration_.size(), n_classes);
   std::vector<Real> factor;
-  for (const auto& grip : grips) {
-    const Real correction = calibration_[calibration_class(grip)];
+  for (const auto& constraint : constraints) {
+    const Real correction = calibration_[calibration_class(constraint)];
     factor.push_back(correction != 0 ? correction : 1);
   }
   regularisation_.augmentation = base::to_device(factor, "factor");

@@ -14,7 +14,8 @@ namespace sprekk::contact {
 
 using fields::BlockVector;
 
-Contact::Contact(Equations& equations, RCP<const mesh::Mesh> mesh, Blocks blocks, std::unique_ptr<LoosePieces> pieces)
+Contact::Contact(Equations& equations, RCP<const mesh::Mesh> mesh, Blocks blocks,
+                 std::unique_ptr<FloatingPieces> pieces)
     : equations_(equations), mesh_(std::move(mesh)), blocks_(blocks) {
   if (pieces && pieces->possible()) pieces_ = std::move(pieces);
 }
@@ -40,7 +41,7 @@ void Contact::resume(const BlockVector& x, const std::vector<Real>& calibration)
   remember(x);
   calibration_ = calibration;
   regularisation_.augmentation = {};
-  if (!calibration_.empty()) correct_augmentation(equations_.grips(x));
+  if (!calibration_.empty()) correct_augmentation(equations_.contact_constraints(x));
 }
 
 void Contact::damp(Real everywhere, const std::vector<Real>& here) {
@@ -52,11 +53,11 @@ void Contact::damp(Real everywhere, const std::vector<Real>& here) {
   regularisation_.damping = damping.on_device();
 }
 
-bool Contact::tether(Real stiffness, const fields::Evaluation& x) {
-  regularisation_.tether = 0;
-  equations_.begin_anew();
+bool Contact::set_proximal_term(Real stiffness, const fields::Evaluation& x) {
+  regularisation_.proximal = 0;
+  equations_.restart_row_sizes();
   if (stiffness == 0 || blocks_.multiplier < 0) return blocks_.multiplier >= 0;
-  const auto held = equations_.grips(x);
+  const auto held = equations_.contact_constraints(x);
   const int dim = mesh_->dim();
   const base::HostTable<Real**> anchor("anchor", held.size(), 2 * dim);
   for (std::size_t f = 0; f < held.size(); ++f)
@@ -65,14 +66,14 @@ bool Contact::tether(Real stiffness, const fields::Evaluation& x) {
       anchor(f, dim + i) = held[f].traction[i];
     }
   regularisation_.anchor = anchor.on_device();
-  regularisation_.tether = stiffness;
+  regularisation_.proximal = stiffness;
   return true;
 }
 
 bool Contact::weakens(const fields::Evaluation& x) {
-  const auto grips = equations_.grips(x);
-  return base::on_any_rank(*mesh_->comm,
-                           std::any_of(grips.begin(), grips.end(), [](const Grip& grip) { return grip.weakens; }));
+  const auto constraints = equations_.contact_constraints(x);
+  return base::on_any_rank(*mesh_->comm, std::any_of(constraints.begin(), constraints.end(),
+                                                     [](const Constraint& constraint) { return constraint.weakens; }));
 }
 
 std::size_t Contact::state_hash(const std::vector<char>& states) {

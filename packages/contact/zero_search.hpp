@@ -9,10 +9,10 @@ namespace sprekk::contact {
 
 /// Search for the zero s > 0 of a non-decreasing function that is negative at s = 0. Steps that grow fourfold bracket
 /// the zero. False position (Illinois: Dowell and Jarratt 1971) then reduces the value to a tenth of that at 0. For
-/// other functions, even if they change between calls, the search ends at some s >= 0 after at most most_values values.
+/// other functions, even if they change between calls, the search ends at some s >= 0 after at most max_values values.
 class ZeroSearch {
  public:
-  static constexpr int most_values = 100;
+  static constexpr int max_values = 100;
 
   /// start: value at 0; no search unless negative. first > 0: first point to evaluate. reach: largest s.
   ZeroSearch(Real start, Real first, Real reach)
@@ -37,15 +37,15 @@ class ZeroSearch {
       bracketed_ = true;
     }
     side_ = value < 0 ? -1 : 1;
-    const bool refined = bracketed_ && (std::abs(value) <= -0.1 * start_ || ++n_refined_ > most_refined);
-    done_ = refined || ++n_values_ == most_values;
+    const bool refined = bracketed_ && (std::abs(value) <= -0.1 * start_ || ++n_refined_ > max_refined);
+    done_ = refined || ++n_values_ == max_values;
     if (done_) return;
     s = bracketed_ ? (low_ * at_high_ - high_ * at_low_) / (at_high_ - at_low_) : 4 * s;
     done_ = lost();
   }
 
  private:
-  static constexpr int most_refined = 30;
+  static constexpr int max_refined = 30;
 
   Real start_, reach_, low_ = 0, at_low_ = start_, high_ = 0, at_high_ = 0;
   int side_ = 0, n_refined_ = 0, n_values_ = 0;

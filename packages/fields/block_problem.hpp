@@ -86,7 +86,7 @@ class BlockProblem {
   /// the block. J must contain the values of the block and zeros elsewhere. Returns the object that saves values of the
   /// block before J is changed. If the block is already shared, its saved values are restored in J. Returns null if the
   /// block is not constant; it then remains in matrix().
-  virtual std::shared_ptr<KeptRows> share(int block, const RCP<const Matrix>& J) { return nullptr; }
+  virtual std::shared_ptr<SavedRows> share(int block, const RCP<const Matrix>& J) { return nullptr; }
   /// True if f contains storage terms over the time step. Shorter steps are then easier to solve. Otherwise only the
   /// loads depend on the step.
   virtual bool stores() const { return false; }

@@ -35,7 +35,7 @@ class Globalisation {
   virtual std::string balance(const Evaluation& x, BlockVector& dx, Evaluation& end) { return ""; }
   /// Description of a floating body in the state of the last jacobian() or commit(); empty if there is none. Stored
   /// data.
-  virtual std::string loose() const { return ""; }
+  virtual std::string floating() const { return ""; }
   /// Adds stiffness to the Jacobian for entities free to slide or open, so that steps are shorter. The relative
   /// stiffness is the larger of `everywhere` and `here` [as states(); empty: zero]; 1 is about the stiffness of the
   /// surrounding rock. Zero gives the derivative of f. Solutions do not depend on it. Local.
@@ -43,14 +43,14 @@ class Globalisation {
   /// Adds springs to f that pull contacts towards their state at x. They constrain every body and reduce the influence
   /// of the earlier state. `stiffness` is relative; 1 is about the stiffness of the surrounding rock, 0 removes the
   /// springs. Returns false if there is no contact; f is then unchanged.
-  virtual bool tether(Real stiffness, const Evaluation& x) { return false; }
+  virtual bool set_proximal_term(Real stiffness, const Evaluation& x) { return false; }
   /// May change constants that affect f but not its zeros, from the difference of two iterates. Call it for the
   /// iterates of one solve that satisfy the linear part of f, in their order, with `first` for the first one. Returns
   /// true if f has changed. The result is the same on every rank.
   virtual bool calibrate(const Evaluation& x, bool first) { return false; }
   /// If the position of a body is not determined by f, replaces the zero x of f by the one nearest to the last accepted
   /// x. Returns true if x moved by more than round-off. x may then be a zero of lower accuracy.
-  virtual bool settle(Evaluation& x) { return false; }
+  virtual bool place_at_minimum_norm(Evaluation& x) { return false; }
 };
 
 }  // namespace sprekk::fields

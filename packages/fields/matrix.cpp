@@ -11,10 +11,10 @@ using Policy = Kokkos::RangePolicy<Execution>;
 /// True if the unknowns of every column node are adjacent, and the rows of every node have the same columns.
 bool in_blocks(const Map& columns, const View<std::size_t*>& start, const View<LocalIndex*>& column, int height,
                int width) {
-  constexpr int most = 3;
+  constexpr int maximum = 3;
   const auto n_columns = static_cast<LocalIndex>(base::n_local_elements(columns));
   const auto n_rows = static_cast<LocalIndex>(start.extent(0)) - 1;
-  if (height > most || width > most || n_columns % width != 0 || n_rows % height != 0) return false;
+  if (height > maximum || width > maximum || n_columns % width != 0 || n_rows % height != 0) return false;
   for (LocalIndex c = 0; c < n_columns; ++c)
     if (columns.getGlobalElement(c) != columns.getGlobalElement(c - c % width) + c % width ||
         columns.getGlobalElement(c) % width != c % width)

@@ -49,7 +49,7 @@ void attempt(const std::string& path, const char* what, const Work& work) {
 
 void write_durably(const std::string& path, const std::string& content) {
   write_file(path, content);
-  bring_to_disk(path);
+  flush_to_disk(path);
 }
 
 /// Paths of the journal and its copy.
@@ -149,22 +149,23 @@ void Checkpoints::write(const Checkpoint& checkpoint) {
       json sealed = {{"format", format}, {"content", checkpoint.content}, {"pieces", seals}, {"journal", journal}};
       for (const auto& [name, vector] : checkpoint.vectors) sealed["vectors"].push_back(name);
       write_durably(part + "/manifest.json", json{{"sealed", sealed}, {"seal", seal_of(sealed.dump())}}.dump());
-      bring_to_disk(part);
+      flush_to_disk(part);
       attempt(part, "renamed", [&](auto& error) { fs::rename(part, folder(number), error); });
-      bring_to_disk(path_);
+      flush_to_disk(path_);
     });
   } catch (...) {  // on every rank
     std::error_code ignored;
     if (first) fs::remove_all(part, ignored);
     throw;
   }
-  const long long kept = std::exchange(last_, number);
+  const long long previous = std::exchange(last_, number);
   journal_ = journal;
   base::collectively(*comm_, [&] {
     if (!first) return;
     std::error_code left;  // directories that remain are ignored
     for (const auto old : before)
-      if (old != kept) fs::rename(folder(old), folder(old) + ".part", left);  // quick rename first, then slow removal
+      if (old != previous)
+        fs::rename(folder(old), folder(old) + ".part", left);  // quick rename first, then slow removal
     remove_parts();
   });
 }

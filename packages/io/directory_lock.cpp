@@ -18,7 +18,7 @@ namespace sprekk::io {
 
 namespace {
 
-constexpr int most_tries = 100;  // of runs that end simultaneously
+constexpr int max_tries = 100;  // of runs that end simultaneously
 
 /// True if the path still refers to the open file. A process that releases the lock removes the file.
 bool is_at(const std::string& path, int descriptor) {
@@ -66,7 +66,7 @@ std::string DirectoryLock::take() {
   make_directory(*comm_, directory_);
   std::string not_offered;
   base::collectively(*comm_, [&] {
-    for (int tries = 0; comm_->getRank() == 0 && tries < most_tries; ++tries) {
+    for (int tries = 0; comm_->getRank() == 0 && tries < max_tries; ++tries) {
       const int file = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
       SPREKK_CHECK(file >= 0, "{}: cannot be written to: {}", directory_, std::generic_category().message(errno));
       const int error = ::flock(file, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;

@@ -33,7 +33,7 @@ void write_file(const std::string& path, const std::string& content) {
   SPREKK_CHECK(error == 0, "{}: cannot be written: {}", path, std::generic_category().message(error));
 }
 
-void bring_to_disk(const std::string& path) {
+void flush_to_disk(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY);
   const bool done = file >= 0 && ::fsync(file) == 0;
   const int error = errno;

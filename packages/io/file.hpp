@@ -23,7 +23,7 @@ bool overwrite(const std::string& path, const std::string& content);
 /// Flushes the content of a file, or the names in a directory, to disk so that they survive a power failure. No effect
 /// on a directory if the file system does not support this. Throws an Error with the path and the system's reason. Not
 /// collective.
-void bring_to_disk(const std::string& path);
+void flush_to_disk(const std::string& path);
 
 /// Creates the directory and its parents; it may already exist. Throws the same Error on every rank. Collective.
 void make_directory(const Comm& comm, const std::string& path);

@@ -293,17 +293,17 @@ void VtuSeries::write(Real time, const std::vector<Block>& blocks) {
       if (has_cells[b * n_ranks + r]) content += data_set(n++, "", piece_file(b, r));
     content += "    </Block>\n";
   }
-  for (std::size_t k = 0; k < kept_.size(); ++k)
-    content +=
-        data_set(blocks.size() + k, fmt::format(" name=\"{}\"", base::xml_escaped(kept_[k])), kept_file(kept_[k]));
+  for (std::size_t k = 0; k < constant_.size(); ++k)
+    content += data_set(blocks.size() + k, fmt::format(" name=\"{}\"", base::xml_escaped(constant_[k])),
+                        constant_file(constant_[k]));
   add_step(time, vtk_file("vtkMultiBlockDataSet", ">\n" + content));
 }
 
 void VtuSeries::keep(const Block& block) {
   base::collectively(*comm_, [&] {
-    if (comm_->getRank() == 0) write_piece(kept_file(block.name), block.piece, declared(block.piece));
+    if (comm_->getRank() == 0) write_piece(constant_file(block.name), block.piece, declared(block.piece));
   });
-  kept_.push_back(block.name);
+  constant_.push_back(block.name);
 }
 
 void VtuSeries::write_piece(const std::string& file, const Piece& piece, const std::string& declared_on_0) const {

@@ -86,7 +86,7 @@ class VtuSeries {
  private:
   std::string step_name(std::size_t step) const;
   std::string path(const std::string& file) const { return directory_ + '/' + file; }
-  std::string kept_file(const std::string& block) const { return name_ + '/' + block + ".vtu"; }
+  std::string constant_file(const std::string& block) const { return name_ + '/' + block + ".vtu"; }
   const char* ending() const { return of_ == Of::grids ? ".pvtu" : ".vtm"; }
   /// Checks the arrays, also against those of rank 0, and writes the file. Not collective.
   void write_piece(const std::string& file, const Piece& piece, const std::string& declared_on_0) const;
@@ -97,7 +97,7 @@ class VtuSeries {
   std::string directory_, name_;
   std::vector<Real> times_;
   Of of_;
-  std::vector<std::string> kept_;  ///< names of blocks
+  std::vector<std::string> constant_;  ///< names of blocks
 };
 
 }  // namespace sprekk::io

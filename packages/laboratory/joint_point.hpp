@@ -72,19 +72,19 @@ struct JointPoint {
   /// Data changed by a step.
   struct Memory {
     Real x[2 * dim], plastic[dim - 1];
-    std::vector<Real> kept;
+    std::vector<Real> saved;
   };
   Memory memory() const {
     Memory memory;
     std::copy_n(unknowns, 2 * dim, memory.x);
     std::copy_n(last_plastic, dim - 1, memory.plastic);
-    memory.kept = history;
+    memory.saved = history;
     return memory;
   }
   void remember(const Memory& memory) {
     std::copy_n(memory.x, 2 * dim, unknowns);
     std::copy_n(memory.plastic, dim - 1, last_plastic);
-    std::copy(memory.kept.begin(), memory.kept.end(), history.begin());
+    std::copy(memory.saved.begin(), memory.saved.end(), history.begin());
   }
 
   static Real distance(const Real (&a)[dim - 1], const Real (&b)[dim - 1]) {

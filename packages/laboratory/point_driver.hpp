@@ -3,6 +3,7 @@
 
 #include "base/check.hpp"
 #include "laboratory/joint_point.hpp"
+#include "laws/joint_parameters.hpp"
 
 #include <algorithm>
 #include <string>
@@ -29,15 +30,15 @@ class PointDriver {
   /// Throws an Error if no state is found.
   std::vector<PointState> advance(Real from, Real t) {
     std::vector<PointState> states;
-    for (int jumps = 0; jumps < most_jumps; ++jumps) {
+    for (int jumps = 0; jumps < max_jumps; ++jumps) {
       const typename Joint::Memory begin = joint_.memory();
       const auto next = step_or_last(from, t);
       const typename Joint::Memory end = joint_.memory();
-      const Real least = least_jump * Joint::distance(begin.plastic, end.plastic);
+      const Real minimum = min_jump * Joint::distance(begin.plastic, end.plastic);
       beyond_ = next.slip_jumps ? std::vector<Real>(end.x, end.x + 2 * dim) : std::vector<Real>();
-      const auto jump = next.slip_jumps ? jump_of_slip(begin, from, t, least) : Jump{};
+      const auto jump = next.slip_jumps ? jump_of_slip(begin, from, t, minimum) : Jump{};
       beyond_.clear();
-      if (!(jump.size > least)) {
+      if (!(jump.size > minimum)) {
         joint_.remember(end);
         states.push_back(next);
         return states;
@@ -60,9 +61,9 @@ class PointDriver {
   long evaluations() const { return joint_.evaluations; }
 
  private:
-  static constexpr int most_jumps = 8;      // slip jumps per step
+  static constexpr int max_jumps = 8;       // slip jumps per step
   static constexpr Real resolution = 1e-9;  // of the time of a slip jump, relative to the step
-  static constexpr Real least_jump = 1e-6;  // relative to the slip of the step
+  static constexpr Real min_jump = 1e-6;    // relative to the slip of the step
 
   /// Slip jump between two adjacent times.
   struct Jump {
@@ -70,9 +71,9 @@ class PointDriver {
     PointState before = {}, after = {};
   };
 
-  /// Finds the first jump larger than `least` between the state `begin` at the time `from` and t. Afterwards the driver
-  /// is at the state after the jump. The time is found by bisection; there is no slip jump before it.
-  Jump jump_of_slip(const typename Joint::Memory& begin, Real from, Real t, Real least) {
+  /// Finds the first jump larger than `minimum` between the state `begin` at the time `from` and t. Afterwards the
+  /// driver is at the state after the jump. The time is found by bisection; there is no slip jump before it.
+  Jump jump_of_slip(const typename Joint::Memory& begin, Real from, Real t, Real minimum) {
     Jump jump{from, t};
     while (jump.to - jump.from > resolution * (t - from)) {
       const Real middle = jump.from + (jump.to - jump.from) / 2;
@@ -86,7 +87,7 @@ class PointDriver {
       std::copy_n(joint_.last_plastic, dim - 1, old);
       jump.after = step(jump.to);
       jump.size = Joint::distance(old, joint_.last_plastic);
-      if ((jump.after.slip_jumps && jump.size > least) || jump.to == t) break;
+      if ((jump.after.slip_jumps && jump.size > minimum) || jump.to == t) break;
       jump.before = jump.after;
       jump.from = jump.to;
       jump.to = std::min(t, jump.to + gap);

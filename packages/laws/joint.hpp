@@ -166,12 +166,12 @@ struct JointLaw {
   }
   /// Updates the history variables of a face at the end of a step. `at` is the contact at the end of the step, with the
   /// history variables of its beginning.
-  KOKKOS_INLINE_FUNCTION void commit(Contact<Real> at, const Numbers<Real>& kept) const {
+  KOKKOS_INLINE_FUNCTION void commit(Contact<Real> at, const Numbers<Real>& history) const {
     if (at.open) at.rubs = rubbed_share(at);
     at.wear = at.rubs * driver.wear(at);
     for_each_part([&](const auto& law, int offset) {
       if (laws::n_history(law) == 0) return;
-      at.after(offset, [&](const auto& own) { return laws::commit(law, own, kept.from(offset)), 0; });
+      at.after(offset, [&](const auto& own) { return laws::commit(law, own, history.from(offset)), 0; });
     });
   }
   /// Calls visit(law, index of its first history variable) for the parts that may have history variables.
@@ -394,9 +394,9 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
       rest.slip_of_step = 0;
       for (int i = 0; i < dim - 1; ++i) rest.plastic_jump[i] = p_old[i];
       rest.plastic_slip = norm(rest.plastic_jump);
-      const T least = bound(rest);
-      bears_at_rest = dim > 2 || !(size > least);
-      if (at.slip_of_step < 0 && least < b) b = least;
+      const T minimum = bound(rest);
+      bears_at_rest = dim > 2 || !(size > minimum);
+      if (at.slip_of_step < 0 && minimum < b) b = minimum;
     }
     return false;
   };

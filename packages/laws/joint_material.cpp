@@ -430,7 +430,7 @@ HydraulicAperture JointMaterial::walls(const Point& x) const {
   return walls;
 }
 
-std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Real largest) const {
+std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real minimum, Real largest) const {
   const auto& role =
       *std::find_if(roles().begin(), roles().end(), [](const auto& one) { return one.name == "friction"; });
   bool known = friction != NoSlip::name;
@@ -446,7 +446,7 @@ std::optional<JointMaterial::Slope> JointMaterial::friction_slope(Real least, Re
   Real first = 0;
   constexpr int n = 40;  // number of compressions, evenly spaced on a logarithmic scale
   for (int k = 0; k <= n; ++k) {
-    const Real compression = least * std::pow(largest / least, Real(k) / n), here = bound_slope(law, compression);
+    const Real compression = minimum * std::pow(largest / minimum, Real(k) / n), here = bound_slope(law, compression);
     if (k == 0) first = here;
     slope.constant = slope.constant && std::abs(here - first) <= 1e-12 * std::abs(first);
     slope.largest = std::max(slope.largest, here);

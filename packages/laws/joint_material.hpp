@@ -58,7 +58,7 @@ struct JointMaterial {
     Real up_to;     ///< largest of these compressions with a slope above 1, Pa; 0: none
   };
   /// Slope of the friction bound; none if friction is incomplete or depends on the position.
-  std::optional<Slope> friction_slope(Real least_compression, Real largest_compression) const;
+  std::optional<Slope> friction_slope(Real min_compression, Real largest_compression) const;
 };
 
 }  // namespace sprekk::laws

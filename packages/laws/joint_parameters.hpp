@@ -11,7 +11,7 @@ namespace sprekk::laws {
 struct JointParameters {
   Joint law;
   Real initial_aperture = 0;           ///< a0 of (15), m
-  Real least_aperture = 0;             ///< residual aperture, m
+  Real min_aperture = 0;               ///< residual aperture, m
   std::array<Real, 2> plastic_jump{};  ///< initial tangential plastic jump in the face frame, m
 };
 

@@ -34,10 +34,10 @@ struct JointHistory {
 /// | number       | [face]                 |       | number of the joint law                          |
 /// | augmentation | [face]                 | Pa/m  | c without `factor`                               |
 /// | p_old        | [face, dim - 1]        | m     | plastic jump of the last step                    |
-/// | kept         | [face, number]; empty: none |  | history variables of the laws                    |
+/// | stored_history| [face, number]; empty: none |  | history variables of the laws                    |
 /// | damping      | [face]; empty: zero    | -     | see jacobian()                                   |
 /// | factor       | [face]; empty: 1       | -     | factor of c                                      |
-/// | tether       |                        | -     | proximal stiffness relative to c, see contact()  |
+/// | proximal     |                        | -     | proximal stiffness relative to c, see contact()  |
 /// | anchor       | [face, 2 dim]          | m, Pa | jump and traction at the origin of the proximal term |
 template <int dim>
 struct JointPoints {
@@ -46,22 +46,22 @@ struct JointPoints {
   ConstView<int*> number;
   ConstView<Real*> augmentation;
   View<Real**> p_old = {};
-  View<Real**> kept = {};
+  View<Real**> stored_history = {};
   ConstView<Real*> damping = {};
   ConstView<Real*> factor = {};
-  Real tether = 0;
+  Real proximal = 0;
   ConstView<Real**> anchor = {};
 
   /// Augmentation constant c, Pa/m, without the stiffness of the joint.
   KOKKOS_INLINE_FUNCTION Real constant(int f) const {
     return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
   }
-  KOKKOS_INLINE_FUNCTION Numbers<Real> kept_of(int f) const {
-    if (kept.extent(1) == 0) return {};
-    return {&kept(f, 0), static_cast<long>(kept.stride(1))};
+  KOKKOS_INLINE_FUNCTION Numbers<Real> history_of(int f) const {
+    if (stored_history.extent(1) == 0) return {};
+    return {&stored_history(f, 0), static_cast<long>(stored_history.stride(1))};
   }
   KOKKOS_INLINE_FUNCTION History history(int f) const {
-    const auto numbers = kept_of(f);
+    const auto numbers = history_of(f);
     return {numbers.first, numbers.stride};
   }
 

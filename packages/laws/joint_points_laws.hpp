@@ -23,8 +23,8 @@ KOKKOS_INLINE_FUNCTION void seed(const Real (&w)[dim], const Real (&lambda)[dim]
 }
 
 /// Computes the traction of contact and friction, and the corresponding jump, without the proximal term. The proximal
-/// term carries tether c (w_n - anchor) of the normal traction and tether c (p - anchor) of the tangential traction,
-/// with p = w_t - lambda_t/K_t and the initial K_t. The tangential elasticity acts on the whole traction.
+/// term carries proximal c (w_n - anchor) of the normal traction and proximal c (p - anchor) of the tangential
+/// traction, with p = w_t - lambda_t/K_t and the initial K_t. The tangential elasticity acts on the whole traction.
 template <int dim>
 template <class T>
 KOKKOS_INLINE_FUNCTION void JointPoints<dim>::contact(int f, const T (&w)[dim], const T (&traction)[dim],
@@ -32,11 +32,11 @@ KOKKOS_INLINE_FUNCTION void JointPoints<dim>::contact(int f, const T (&w)[dim], 
   for (int k = 0; k < dim; ++k) {
     jump[k] = w[k];
     borne[k] = traction[k];
-    if (tether == 0) continue;
+    if (proximal == 0) continue;
     const Real compliance = k == 0 ? 0 : law[number(f)].elastic.initial_compliance();
     Real there = 0;
     for (int i = 0; i < dim; ++i) there += frame(f, k, i) * (anchor(f, i) - compliance * anchor(f, dim + i));
-    const T pull = tether * constant(f) * (w[k] - compliance * traction[k] - there);
+    const T pull = proximal * constant(f) * (w[k] - compliance * traction[k] - there);
     jump[k] -= compliance * pull;
     borne[k] -= pull;
   }
@@ -137,7 +137,7 @@ KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end,
     split_jump<dim>(joint, end.state, end.w, end.traction, end.p_old, elastic, plastic, history(f));
     for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
   }
-  if (kept.extent(1) == 0) return;
+  if (stored_history.extent(1) == 0) return;
   Real now[dim - 1];
   for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
   const auto contact = converged<dim>(joint, end.state, end.w, end.traction, now, end.p_old, history(f));
@@ -145,7 +145,7 @@ KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end,
     const Real slip = runaway_slip(joint, contact, to.softness(f) + joint.elastic.initial_compliance());
     if (slip > to.runaway(f, 0)) to.runaway(f, 0) = slip;
   }
-  joint.commit(contact, kept_of(f));
+  joint.commit(contact, history_of(f));
 }
 
 }  // namespace sprekk::laws

@@ -215,15 +215,15 @@ KOKKOS_INLINE_FUNCTION bool takes_damage(const K& law) {
 }
 
 /// Updates the history variables of a law at the end of a step by law.commit(contact, numbers), if the law has any.
-template <class K, class At, class Kept>
-KOKKOS_INLINE_FUNCTION void commit(const K& law, const At& at, const Kept& kept) {
+template <class K, class At, class Values>
+KOKKOS_INLINE_FUNCTION void commit(const K& law, const At& at, const Values& history) {
   if constexpr (is_one_of_several<K>) {
     law.visit([&](const auto& one) {
-      commit(one, at, kept);
+      commit(one, at, history);
       return 0;
     });
   } else if constexpr (history_size<K> != 0) {
-    law.commit(at, kept);
+    law.commit(at, history);
   }
 }
 

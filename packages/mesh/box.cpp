@@ -18,7 +18,7 @@
 namespace sprekk::mesh {
 namespace {
 
-constexpr Real most_blocks = 1e9;  // limit of the memory of one rank
+constexpr Real max_blocks = 1e9;  // limit of the memory of one rank
 
 using Lattice = std::array<int, 3>;  ///< point of the structured mesh; the last component is 0 in 2D
 using Corners = std::vector<int>;    ///< corners of a square or cube; bit i set: upper end in direction i
@@ -122,14 +122,14 @@ class BoxBuilder {
       SPREKK_CHECK(box_.cells[i] > 0, "box mesh: cells: {} in direction {}; must be positive", box_.cells[i], "xyz"[i]);
     }
     const Real blocks = std::accumulate(box_.cells.begin(), box_.cells.end(), Real{1}, std::multiplies<Real>());
-    SPREKK_CHECK(blocks <= most_blocks, "box mesh: cells: {{{}}} makes {:.3g} {}, may make {:.0g}",
-                 fmt::join(box_.cells, ", "), blocks, dim_ == 2 ? "squares" : "cubes", most_blocks);
+    SPREKK_CHECK(blocks <= max_blocks, "box mesh: cells: {{{}}} makes {:.3g} {}, may make {:.0g}",
+                 fmt::join(box_.cells, ", "), blocks, dim_ == 2 ? "squares" : "cubes", max_blocks);
     const Real cells = blocks * static_cast<Real>(cells_of_block(shape_, false).size()),
-               least = sizeof(GlobalIndex) * n_nodes(shape_) * cells + sizeof(Real) * dim_ * blocks;
-    SPREKK_CHECK(least <= base::memory_limit(),
+               minimum = sizeof(GlobalIndex) * n_nodes(shape_) * cells + sizeof(Real) * dim_ * blocks;
+    SPREKK_CHECK(minimum <= base::memory_limit(),
                  "box mesh: cells: {{{}}} makes {:.3g} cells, which alone take {:.3g} GB; there are {:.3g} GB: take "
                  "fewer, and \"refinements\", which each rank makes for its own part",
-                 fmt::join(box_.cells, ", "), cells, least / 1e9, base::memory_limit() / 1e9);
+                 fmt::join(box_.cells, ", "), cells, minimum / 1e9, base::memory_limit() / 1e9);
   }
 
   Real block_size(int i) const { return (box_.upper_corner[i] - box_.lower_corner[i]) / n_blocks_[i]; }

@@ -190,7 +190,7 @@ class Parser {
   /// Reads the numbers of blocks and of items; skips the minimum and maximum tag.
   std::array<GlobalIndex, 2> read_block_header(const char* what) {
     const auto n_blocks = in_.count("blocks", 4), n = in_.count(what);
-    for (int i = 0; i < 2; ++i) in_.long_integer("the least or largest number");
+    for (int i = 0; i < 2; ++i) in_.long_integer("the smallest or largest number");
     return {n_blocks, n};
   }
 

@@ -173,16 +173,16 @@ class MshBuilder {
     const auto mirrored = mirrored_nodes(mesh_.shape);
     const int n = n_nodes(mesh_.shape);
     for (GlobalIndex cell = 0; cell < mesh_.n_cells(); ++cell) {
-      const auto [least, largest] = geometry.scaled_jacobian(mesh_, cell);
+      const auto [minimum, largest] = geometry.scaled_jacobian(mesh_, cell);
       const auto where = [&] { return text(point(mesh_, mesh_.cells[cell * n])); };
       constexpr Real flat = 1e-10;
-      if (std::max(std::abs(least), std::abs(largest)) <= flat)
+      if (std::max(std::abs(minimum), std::abs(largest)) <= flat)
         fail("element {} at {} has no volume", cell_[cell]->tag, where());
-      if (least <= flat && largest >= -flat)
+      if (minimum <= flat && largest >= -flat)
         fail(
             "element {} at {} is twisted or not convex: its scaled Jacobian is {:.3g} at one corner and {:.3g} at "
             "another",
-            cell_[cell]->tag, where(), least, largest);
+            cell_[cell]->tag, where(), minimum, largest);
       if (largest > 0) continue;
       const std::vector<GlobalIndex> nodes(&mesh_.cells[cell * n], &mesh_.cells[cell * n] + n);
       for (int k = 0; k < n; ++k) mesh_.cells[cell * n + k] = nodes[mirrored[k]];

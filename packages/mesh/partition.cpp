@@ -131,11 +131,11 @@ std::vector<int> partition(const GlobalMesh& mesh, int n_parts) {
                           std::max(0.0, imbalance(loads(graph, part, n_parts, 1)) - allowed.fracture_faces));
   };
   best = metis_partition(graph, n_parts, 1, std::nullopt);
-  auto least = excess(best);
-  for (idx_t seed = 1; seed <= n_seeds && least.first + least.second > 0; ++seed)
-    if (auto part = metis_partition(graph, n_parts, seed, allowed); excess(part) < least) {
+  auto minimum = excess(best);
+  for (idx_t seed = 1; seed <= n_seeds && minimum.first + minimum.second > 0; ++seed)
+    if (auto part = metis_partition(graph, n_parts, seed, allowed); excess(part) < minimum) {
       best = std::move(part);
-      least = excess(best);
+      minimum = excess(best);
     }
   fill_empty_parts(graph, best, n_parts);
   return best;
@@ -146,8 +146,8 @@ PartitionReport report(const GlobalMesh& mesh, const std::vector<int>& part, int
   for (int p : part) ++n_cells[p];
   for (const auto& face : mesh.fracture_faces) ++n_faces[part[face.cell[minus]]];
   const auto range = [](const std::vector<idx_t>& loads) {
-    const auto [least, most] = std::minmax_element(loads.begin(), loads.end());
-    return std::array<GlobalIndex, 2>{*least, *most};
+    const auto [minimum, maximum] = std::minmax_element(loads.begin(), loads.end());
+    return std::array<GlobalIndex, 2>{*minimum, *maximum};
   };
   PartitionReport result{range(n_cells), range(n_faces), imbalance(n_cells), imbalance(n_faces), 0, 0};
   if (n_parts == 1) return result;

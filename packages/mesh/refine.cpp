@@ -236,19 +236,20 @@ void check_size(const Mesh& mesh, int times) {
   const Real factor = std::pow(subdivision(mesh.shape).n_children(), times),
              nodes_per_cell = n_nodes(quadratic(mesh.shape)), here = factor * static_cast<Real>(mesh.n_cells()),
              all = factor * static_cast<Real>(mesh.n_global_cells),
-             most_here = static_cast<Real>(std::numeric_limits<LocalIndex>::max()) / nodes_per_cell,
-             most = static_cast<Real>(std::numeric_limits<GlobalIndex>::max()) / nodes_per_cell;
+             max_here = static_cast<Real>(std::numeric_limits<LocalIndex>::max()) / nodes_per_cell,
+             maximum = static_cast<Real>(std::numeric_limits<GlobalIndex>::max()) / nodes_per_cell;
   base::collectively(*mesh.comm, [&] {
     SPREKK_CHECK(
-        here <= most_here && all <= most,
+        here <= max_here && all <= maximum,
         "refinements: {} make {:.3g} cells of {}; of these rank {} would hold {:.3g} with its ghosts, may hold "
         "{:.3g}; take fewer, or more ranks",
-        times, all, mesh.n_global_cells, mesh.comm->getRank(), here, most_here);
-    const Real least = here * sizeof(LocalIndex) * n_nodes(mesh.shape);
-    SPREKK_CHECK(least <= base::memory_limit(),
+        times, all, mesh.n_global_cells, mesh.comm->getRank(), here, max_here);
+    const Real minimum = here * sizeof(LocalIndex) * n_nodes(mesh.shape);
+    SPREKK_CHECK(minimum <= base::memory_limit(),
                  "refinements: {} make {:.3g} cells of {}; of these rank {} would hold {:.3g} with its ghosts, which "
                  "alone take {:.3g} GB; there are {:.3g} GB: take fewer, or more machines",
-                 times, all, mesh.n_global_cells, mesh.comm->getRank(), here, least / 1e9, base::memory_limit() / 1e9);
+                 times, all, mesh.n_global_cells, mesh.comm->getRank(), here, minimum / 1e9,
+                 base::memory_limit() / 1e9);
   });
 }
 

@@ -14,10 +14,10 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int most_runs = 60;
+constexpr int max_runs = 60;
 constexpr Real marked_share = 0.5;   ///< share of the indicator sum in the marked cells
 constexpr Real share_of_time = 0.3;  ///< of the tolerance
-constexpr int most_halvings = 6;     ///< of time steps
+constexpr int max_halvings = 6;      ///< of time steps
 
 /// Converts unknown (infinite) values to null.
 json number(Real value) { return std::isfinite(value) ? json(value) : json(); }
@@ -79,7 +79,7 @@ std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> co
 /// of the error before and all of the error after halving. The tolerated time error is share_of_time of the tolerance.
 void Adaptation::choose_steps(Scene scene, RCP<const Comm> comm) {
   auto values = values_at_end(scene, comm);
-  for (int k = 0; k < most_halvings && !values.empty(); ++k) {
+  for (int k = 0; k < max_halvings && !values.empty(); ++k) {
     Scene finer = scene;
     finer.time = halved(scene.time);
     const auto others = values_at_end(finer, comm);
@@ -136,7 +136,7 @@ std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const 
     return fmt::format("the next run would end after {:.3g} s (\"seconds\")", *accuracy.seconds);
   if (accuracy.memory && grows * bytes > *accuracy.memory)
     return fmt::format("the next run would need more than {:.3g} bytes (\"memory\")", *accuracy.memory);
-  if (runs_.size() >= most_runs) return fmt::format("{} meshes were not enough", most_runs);
+  if (runs_.size() >= max_runs) return fmt::format("{} meshes were not enough", max_runs);
   return "";
 }
 

@@ -27,9 +27,9 @@ json block_summary(const assembly::System& system) {
   const auto& A = system.matrix();
   for (int i = 0; i < A.n_blocks(); ++i)
     for (int j = 0; j < A.n_blocks(); ++j) {
-      const auto kept = i == j ? A.kept(i) : nullptr;
-      if (A(i, j).is_null() && !kept) continue;
-      const auto matrix = kept ? kept->J() : fields::wrapped(A(i, j));
+      const auto saved = i == j ? A.saved(i) : nullptr;
+      if (A(i, j).is_null() && !saved) continue;
+      const auto matrix = saved ? saved->J() : fields::wrapped(A(i, j));
       const auto& numbers = matrix->numbers();
       const auto starts = numbers.n_rows() / numbers.height;
       const auto entries = static_cast<long long>(numbers.value.extent(0));

@@ -169,10 +169,10 @@ void carry_over(const mesh::Mesh& whole, assembly::System& from, const fields::B
       if (const auto& field = to.layouts()[b].field(); from.layouts()[o].field().name == field.name)
         carry(field, whole, old_mesh, fields::by_entity(*x[o], field.n_components), mesh,
               fields::by_entity(*carried[b], field.n_components));
-  auto kept = from.histories();
-  for (auto& passed : from.passed_on(x)) kept.push_back(std::move(passed));
+  auto saved = from.histories();
+  for (auto& passed : from.passed_on(x)) saved.push_back(std::move(passed));
   for (const auto& [field, values] : to.histories())
-    for (const auto& [old, old_values] : kept)
+    for (const auto& [old, old_values] : saved)
       if (old.name == field.name) carry(field, whole, old_mesh, old_values, mesh, values);
   to.take_over(carried);
   const auto before = from.memory();

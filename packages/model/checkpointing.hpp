@@ -15,7 +15,7 @@ class Checkpointing {
   Checkpointing(Model& model, Steps& steps, const std::string& directory, base::Log& log);
 
   /// Removes the checkpoints of a previous run.
-  void start_anew() { checkpoints_.clear(); }
+  void remove_checkpoints() { checkpoints_.clear(); }
   /// Restores the model from the last undamaged checkpoint and warns of damaged ones. Returns the results up to this
   /// checkpoint. Throws an Error if there is no checkpoint, or if it belongs to another scene.
   EarlierResults restore();

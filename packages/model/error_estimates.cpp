@@ -12,7 +12,7 @@ estimate::ErrorEstimator make_error_estimator(Model& model) {
   return {model.system(), std::move(errors), model.setting().start,
           [&](const fields::BlockVector& x, const fields::BlockVector& right_side, fields::BlockVector& dx,
               Real tolerance) -> std::string {
-            const auto report = model.newton().answer(x, right_side, dx, tolerance);
+            const auto report = model.newton().solve_linearized(x, right_side, dx, tolerance);
             return report.converged ? "" : report.reason;
           }};
 }

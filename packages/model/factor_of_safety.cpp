@@ -52,11 +52,11 @@ void check(const Model& model) {
                scene.origin, base::quoted_list(stores));
 }
 
-bool stands(const solve::StepReport& report) { return report.converged && report.loose.empty(); }
+bool stands(const solve::StepReport& report) { return report.converged && report.floating.empty(); }
 
 /// Floating blocks after convergence, or the reason of the failure.
 std::string reason_of(const solve::StepReport& report) {
-  if (report.converged) return report.loose;
+  if (report.converged) return report.floating;
   const std::string found = "no equilibrium found: ";
   const auto& text = report.reason;
   if (text.rfind(found, 0) != 0) return text;
@@ -96,23 +96,23 @@ FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> co
   check(model);
   run_to_the_end(model, options.first);
   const Scene own = reduced(model.scene(), 1 / options.first);  // including the changes by stages
-  FactorOfSafety found{.least = options.first, .lost = {}, .reductions = {}, .states = {}};
-  const auto holds = [&](Real factor) {
+  FactorOfSafety found{.stable = options.first, .lost = {}, .reductions = {}, .states = {}};
+  const auto in_equilibrium = [&](Real factor) {
     found.reductions.push_back(reduce(model, own, factor));
     if (tell) tell(found.reductions.back());
     return found.reductions.back().stands;
   };
   constexpr Real growth = 1.5;
-  while (!found.lost && found.least < options.most)
-    if (const Real next = std::min(growth * found.least, options.most); holds(next))
-      found.least = next;
+  while (!found.lost && found.stable < options.maximum)
+    if (const Real next = std::min(growth * found.stable, options.maximum); in_equilibrium(next))
+      found.stable = next;
     else
       found.lost = next;
-  while (found.lost && *found.lost > (1 + options.tolerance) * found.least) {
-    const Real middle = (found.least + *found.lost) / 2;
-    (holds(middle) ? found.least : *found.lost) = middle;
+  while (found.lost && *found.lost > (1 + options.tolerance) * found.stable) {
+    const Real middle = (found.stable + *found.lost) / 2;
+    (in_equilibrium(middle) ? found.stable : *found.lost) = middle;
   }
-  model.change(reduced(own, found.least));
+  model.change(reduced(own, found.stable));
   const auto outputs = model.system().outputs(model.state());
   found.states = digest(described_singles(model.mesh()), fracture_table(model.mesh(), outputs, Grouping::singles));
   return found;

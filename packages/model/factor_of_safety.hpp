@@ -14,7 +14,7 @@ struct SafetyOptions {
   std::vector<std::string> overrides;  ///< "Path.To.Entry=value"
   Real tolerance = 1e-3;               ///< relative tolerance of the factor
   Real first = 1;                      ///< factor for the complete run of the scene
-  Real most = 100;                     ///< largest factor to be tested
+  Real maximum = 100;                  ///< largest factor to be tested
 };
 
 /// Trial with one factor.
@@ -26,10 +26,10 @@ struct Reduction {
 };
 
 struct FactorOfSafety {
-  Real least;                         ///< largest factor with an equilibrium
-  std::optional<Real> lost;           ///< least without one, <= (1 + tolerance) least; absent: `most` has one
+  Real stable;               ///< largest factor with an equilibrium
+  std::optional<Real> lost;  ///< smallest factor without one, <= (1 + tolerance) stable; absent: `maximum` has one
   std::vector<Reduction> reductions;  ///< in the order of the trials
-  std::vector<std::string> states;    ///< digest() of the state at `least`
+  std::vector<std::string> states;    ///< digest() of the state at `stable`
 };
 
 /// Runs the scene to its end with the strength of all joints divided by the factor F = `first`. Then F is increased at

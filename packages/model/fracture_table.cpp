@@ -40,9 +40,10 @@ class Groups {
   }
 
   std::vector<Real> maxima(const std::vector<Real>& values) const {
-    std::vector<Real> most(n_, -std::numeric_limits<Real>::max());
-    for (LocalIndex f = 0; f < mesh_.n_owned_fracture_faces; ++f) most[group(f)] = std::max(most[group(f)], values[f]);
-    return base::max_over_ranks(*mesh_.comm, most);
+    std::vector<Real> maximum(n_, -std::numeric_limits<Real>::max());
+    for (LocalIndex f = 0; f < mesh_.n_owned_fracture_faces; ++f)
+      maximum[group(f)] = std::max(maximum[group(f)], values[f]);
+    return base::max_over_ranks(*mesh_.comm, maximum);
   }
 
  private:
@@ -63,18 +64,20 @@ class Adder {
       : groups_(groups), area_(area), columns_(columns) {}
 
   void add(const OutputField& output) {
-    const auto& told = output.summary;
-    for (std::size_t c = 0; c < told.classes.size(); ++c) add_class(output, static_cast<Real>(c), told.classes[c]);
-    if (told.kind == Summary::none || told.kind == Summary::fractions) return;
-    const auto name = with_underscores(told.name);
-    if (told.kind == Summary::error_bound) return add_maxima(output, "error_of_" + name);
+    const auto& reported = output.summary;
+    for (std::size_t c = 0; c < reported.classes.size(); ++c)
+      add_class(output, static_cast<Real>(c), reported.classes[c]);
+    if (reported.kind == Summary::none || reported.kind == Summary::fractions) return;
+    const auto name = with_underscores(reported.name);
+    if (reported.kind == Summary::error_bound) return add_maxima(output, "error_of_" + name);
     const int n = output.n_components;
-    const bool is_mean = told.kind != Summary::integral;
+    const bool is_mean = reported.kind != Summary::integral;
     auto values = groups_.integrals(n, [&](LocalIndex f, int c) { return output.values[f * n + c]; });
     for (std::size_t i = 0; i < values.size() && is_mean; ++i) values[i] /= area_[i / n];
-    for (const auto& derived : told.derived) add_derived(derived, n, values);
-    columns_.push_back({is_mean ? "mean_" + name : name, told.frame, is_mean ? output.unit : told.unit, n, values});
-    if (told.kind == Summary::mean_and_max) add_maxima(output, "max_" + name);
+    for (const auto& derived : reported.derived) add_derived(derived, n, values);
+    columns_.push_back(
+        {is_mean ? "mean_" + name : name, reported.frame, is_mean ? output.unit : reported.unit, n, values});
+    if (reported.kind == Summary::mean_and_max) add_maxima(output, "max_" + name);
   }
 
  private:
@@ -190,7 +193,7 @@ std::string to_csv(const json& described, const std::vector<FractureColumn>& col
     return text.find_first_of(",\"\n") == text.npos ? text : '"' + text + '"';
   };
   const std::vector<std::pair<const char*, const char*>> known = {{"strike", "degree"}, {"dip", "degree"}};
-  const auto is_told = [&](const char* entry) { return !described.empty() && described[0].contains(entry); };
+  const auto is_described = [&](const char* entry) { return !described.empty() && described[0].contains(entry); };
   /// Areas in 2D are lengths.
   const auto title = [](const FractureColumn& column) {
     const auto name = column.full_name();
@@ -203,7 +206,7 @@ std::string to_csv(const json& described, const std::vector<FractureColumn>& col
   }
   std::string text = "name,set";
   for (const auto& [entry, unit] : known)
-    if (is_told(entry)) text += fmt::format(",{} [{}]", entry, unit);
+    if (is_described(entry)) text += fmt::format(",{} [{}]", entry, unit);
   for (const auto& column : columns)
     for (int c = 0; c < column.n_components && column.frame != "global"; ++c)
       text += fmt::format(",{}{} [{}]", title(column),
@@ -215,7 +218,7 @@ std::string to_csv(const json& described, const std::vector<FractureColumn>& col
   for (std::size_t k = 0; k < described.size(); ++k) {
     text += quoted(described[k]["name"]) + ',' + quoted(described[k]["set"]);
     for (const auto& [entry, unit] : known)
-      if (is_told(entry)) fmt::format_to(std::back_inserter(text), ",{}", described[k][entry].get<Real>());
+      if (is_described(entry)) fmt::format_to(std::back_inserter(text), ",{}", described[k][entry].get<Real>());
     for (std::size_t i = 0; i < columns.size(); ++i)
       for (int c = 0; c < columns[i].n_components && columns[i].frame != "global"; ++c) {
         const Real value = columns[i].values[k * columns[i].n_components + c];
@@ -235,14 +238,14 @@ std::vector<std::string> digest(const json& described, const std::vector<Fractur
     for (std::size_t k = 0; k < column.values.size(); ++k)
       if (column.values[k] > 0) found.emplace_back(-column.values[k], k);
     std::sort(found.begin(), found.end());
-    constexpr std::size_t told = 12;
+    constexpr std::size_t reported = 12;
     auto line =
         fmt::format("{} on {} of {} fractures", column.name.substr(prefix.size()), found.size(), described.size());
-    for (std::size_t i = 0; i < std::min(told, found.size()); ++i)
+    for (std::size_t i = 0; i < std::min(reported, found.size()); ++i)
       line += fmt::format("{} \"{}\" ({:.3g} %{})", i == 0 ? ":" : ",",
                           described[found[i].second]["name"].get<std::string>(), -100 * found[i].first,
                           i == 0 ? " of its area" : "");
-    lines.push_back(line + (found.size() > told ? ", ..." : ""));
+    lines.push_back(line + (found.size() > reported ? ", ..." : ""));
   }
   return lines;
 }

@@ -46,7 +46,7 @@ nlohmann::json described_singles(const mesh::Mesh& mesh);
 /// their column are written as 0.
 std::string to_csv(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 
-/// Returns one line per contact state, `slip on 2 of 12 fractures: "a" (100 % of its area), "b" (35 %)`. Fractures are
+/// Returns one line per contact state, `open on 2 of 12 fractures: "a" (100 % of its area), "b" (35 %)`. Fractures are
 /// ordered by their share of the area in this state, largest first.
 std::vector<std::string> digest(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 

@@ -73,16 +73,17 @@ void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
     : more_modules_(more_modules), timers_(rcp(new base::Timers)), time_(scene.time.start) {
   auto draft = prepared(scene);
-  std::string unheld;  // rock unsupported by the scene, perhaps supported by host modules; on rank 0
+  std::string unconstrained;  // rock unsupported by the scene, perhaps supported by host modules; on rank 0
   {
     const auto scope = timers_->scope("mesh");
-    whole_mesh_ = mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unheld : nullptr); }, comm);
+    whole_mesh_ =
+        mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unconstrained : nullptr); }, comm);
     whole_mesh_ = draft.value.refined(whole_mesh_);
     bool facets = false;
     physics::for_each_physics([&](auto physics) { facets = facets || physics.needs_facets(draft.value); });
     if (facets) whole_mesh_ = mesh::with_facets(whole_mesh_);
   }
-  auto made = drafted(std::move(draft.value), unheld);
+  auto made = drafted(std::move(draft.value), unconstrained);
   scene_ = made.scene;
   system_ = make_system(std::move(made));
   x_ = system_->initial();
@@ -90,8 +91,9 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   start_solver();
 }
 
-/// Makes the mesh and the modules. `unheld`: message on rock that host modules must support; empty if all is supported.
-Model::Draft Model::drafted(Scene scene, const std::string& unheld) const {
+/// Makes the mesh and the modules. `unconstrained`: message on rock that host modules must support; empty if all is
+/// supported.
+Model::Draft Model::drafted(Scene scene, const std::string& unconstrained) const {
   const auto& comm = *whole_mesh_->comm;
   Draft draft{std::move(scene), mesh::without_regions(whole_mesh_, draft.scene.excavated()), {}};
   const auto& mesh = *draft.mesh;
@@ -103,9 +105,9 @@ Model::Draft Model::drafted(Scene scene, const std::string& unheld) const {
       for (auto& module : more_modules_(mesh)) draft.modules.push_back(std::move(module));
     const bool held = std::any_of(draft.modules.begin(), draft.modules.end(), [](const auto& module) {
       const auto* forces = dynamic_cast<const assembly::Supporting*>(module.get());
-      return forces && forces->holds_bodies();
+      return forces && forces->constrains_bodies();
     });
-    SPREKK_CHECK(unheld.empty() || held, "{}: {}", draft.scene.origin, unheld);
+    SPREKK_CHECK(unconstrained.empty() || held, "{}: {}", draft.scene.origin, unconstrained);
   });
   return draft;
 }
@@ -220,7 +222,7 @@ solve::StepReport Model::advance(Real t) {
   report.exchanges = system_->take_exchanges();
   if (report.converged || report.stopped) return report;
   const bool oscillates = base::any_rank(*mesh().comm, [&] {
-    return std::find(report.unsettled.begin(), report.unsettled.end(), 1) != report.unsettled.end();
+    return std::find(report.oscillating.begin(), report.oscillating.end(), 1) != report.oscillating.end();
   });
   physics::for_each_physics([&]<physics::HasSolvability P>(P) {
     for (const auto& doubt : P::Solvability::doubts(setting(), oscillates)) report.reason += "; " + doubt;
@@ -290,9 +292,9 @@ void Model::restore(const io::Checkpoint& checkpoint) {
     redistribute(*checkpoint.vectors.at(key_of(system_->blocks()[b])), *x_[b]);
   for (const auto& [field, values] : system_->histories()) {
     fields::Vector vector(fields::owned_map(field, mesh()));
-    const auto kept = checkpoint.vectors.find(field.name);
-    if (kept == checkpoint.vectors.end()) continue;  // rates, absent after steps of prescribed length
-    redistribute(*kept->second, vector);
+    const auto saved = checkpoint.vectors.find(field.name);
+    if (saved == checkpoint.vectors.end()) continue;  // rates, absent after steps of prescribed length
+    redistribute(*saved->second, vector);
     Kokkos::deep_copy(values, fields::by_entity(vector, field.n_components));
   }
   time_ = content.at("time");

@@ -97,7 +97,7 @@ class Model {
     RCP<const mesh::Mesh> mesh;
     std::vector<std::unique_ptr<assembly::Module>> modules;
   };
-  Draft drafted(Scene scene, const std::string& unheld = "") const;
+  Draft drafted(Scene scene, const std::string& unconstrained = "") const;
   Draft drafted_change(const Scene& before, const Scene& changed) const;
   void check_stages() const;
   void check_start(Draft draft, const StagedScene& stage) const;

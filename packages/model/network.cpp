@@ -108,7 +108,8 @@ void Network::describe(base::Section& s) {
           "minimum distance between separate fractures, an error below; absent: 1e-4 of the diagonal of the domain");
   s.entry(minimum_angle, "minimum angle", "degree", base::between(0, 60),
           "minimum angle between fractures at an intersection, an error below");
-  s.entry(most_cells, "most cells", "-", base::at_least(1),
+  s.hint({"most cells"}, "Did you mean \"maximum cells\"?");
+  s.entry(maximum_cells, "maximum cells", "-", base::at_least(1),
           "maximum number of cells, by an estimate before the generation of the mesh, an error above");
   s.choice(unusable, "unusable fractures", {"refused", "left out"},
            "treatment of fractures outside of the domain, shorter than \"tolerance\" or \"minimum distance\", or "

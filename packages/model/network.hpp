@@ -66,7 +66,7 @@ struct Network {
   Real growth = 0.5;
   std::optional<Real> tolerance, minimum_distance;
   Real minimum_angle = 2;
-  int most_cells = 10000000;
+  int maximum_cells = 10000000;
   std::string unusable = "refused";  ///< or "left out"
   void describe(base::Section& section);
 

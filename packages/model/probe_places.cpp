@@ -77,14 +77,14 @@ std::vector<Real> shape_functions_at(const Mesh& mesh, LocalIndex cell, const Ve
     }
   }
   if (!(change < 1e-10)) return {};
-  Real least = simplex ? 1 : std::numeric_limits<Real>::max();  // distance to the sides in reference coordinates
-  for (const Real one : xi) least = simplex ? std::min(least, one) : std::min(least, 1 - std::abs(one));
+  Real minimum = simplex ? 1 : std::numeric_limits<Real>::max();  // distance to the sides in reference coordinates
+  for (const Real one : xi) minimum = simplex ? std::min(minimum, one) : std::min(minimum, 1 - std::abs(one));
   if (simplex) {
     Real last = 1;
     for (const Real one : xi) last -= one;
-    least = std::min(least, last);
+    minimum = std::min(minimum, last);
   }
-  if (least < -tolerance) return {};
+  if (minimum < -tolerance) return {};
   assembly::ReferenceCell<shape>::shape_functions(xi, N);
   return {N, N + n};
 }
@@ -140,10 +140,10 @@ std::vector<Shares> best(const Mesh& mesh, std::vector<Found> here, const std::v
                          const char* where) {
   std::vector<Real> distance;
   for (const auto& found : here) distance.push_back(found.distance);
-  const auto least = base::min_over_ranks(*mesh.comm, distance);
+  const auto minimum = base::min_over_ranks(*mesh.comm, distance);
   std::vector<GlobalIndex> number;
   for (std::size_t k = 0; k < here.size(); ++k)
-    number.push_back(here[k].distance == least[k] ? here[k].number : std::numeric_limits<GlobalIndex>::max());
+    number.push_back(here[k].distance == minimum[k] ? here[k].number : std::numeric_limits<GlobalIndex>::max());
   const auto lowest = base::min_over_ranks(*mesh.comm, number);
   std::vector<Shares> result;
   for (std::size_t k = 0; k < here.size(); ++k) {
@@ -195,14 +195,14 @@ Real distance_to(const Mesh& mesh, const Mesh::FractureFace& face, const Vector&
   const auto corners = mesh::face_corners(mesh, face.cell[mesh::minus], face.local_face[mesh::minus]);
   if (corners.n == 2) return distance_to(corners.x[0], corners.x[1], x);
   const Vector n = face.frame[0];
-  Real least = std::numeric_limits<Real>::max();
+  Real minimum = std::numeric_limits<Real>::max();
   int left = 0;
   for (int k = 0; k < corners.n; ++k) {
     const auto &a = corners.x[k], &b = corners.x[(k + 1) % corners.n];
-    least = std::min(least, distance_to(a, b, x));
+    minimum = std::min(minimum, distance_to(a, b, x));
     left += dot(cross(b - a, x - a), n) > 0 ? 1 : -1;
   }
-  return std::abs(left) == corners.n ? std::abs(dot(n, x - corners.x[0])) : least;
+  return std::abs(left) == corners.n ? std::abs(dot(n, x - corners.x[0])) : minimum;
 }
 
 std::vector<Shares> shares_on_faces(const Mesh& mesh, const std::vector<Vector>& points) {

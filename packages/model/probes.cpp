@@ -49,7 +49,7 @@ std::vector<Vector> points_of(const Probe& probe, int dim) {
 }
 
 /// Adds the columns of the place: distance from the first point and coordinates.
-void tell_places(io::SeriesTable& table, const std::vector<Vector>& points, int dim) {
+void report_places(io::SeriesTable& table, const std::vector<Vector>& points, int dim) {
   table.place_columns = {{"distance", "m"}};
   for (int i = 0; i < dim; ++i) table.place_columns.push_back({std::string(1, "xyz"[i]), "m"});
   for (const auto& x : points) {
@@ -123,7 +123,7 @@ Probes::Probes(const Model& model) : model_(model), probes_(model.scene().probes
   base::throw_errors(errors);
 }
 
-void Probes::look_again() {
+void Probes::update_places() {
   if (empty()) return;
   auto tables = std::exchange(tables_, {});
   looks_.clear();
@@ -137,7 +137,7 @@ void Probes::add(const std::string& name, const Probe& probe, const Known& known
   tables_.push_back({name});
   looks_.emplace_back();
   if (const auto totals = probe.totals(); !totals.empty()) return add_totals(totals);
-  if (!probe.line.empty()) tell_places(tables_.back(), points_of(probe, mesh.dim()), mesh.dim());
+  if (!probe.line.empty()) report_places(tables_.back(), points_of(probe, mesh.dim()), mesh.dim());
   const auto index = [](const auto& all, const std::string& one, const auto& name_of) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& other) { return name_of(other) == one; });
     return found == all.end() ? -1 : static_cast<int>(found - all.begin());

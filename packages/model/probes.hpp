@@ -28,7 +28,7 @@ class Probes {
   explicit Probes(const Model& model);
 
   /// Updates the probes after a change of the mesh of the model. Collective.
-  void look_again();
+  void update_places();
 
   bool empty() const { return tables_.empty(); }
   /// Returns the values of each table for a state, [table][place * columns + column], the same on every rank.

@@ -23,17 +23,16 @@ using nlohmann::json;
 
 namespace {
 
-constexpr const char* unsettled_name = "unsettled";  ///< name of the VTU files
+constexpr const char* oscillating_name = "oscillating";  ///< name of the VTU files
 
 /// Removes the files of oscillating faces of a previous run; ignores failures. Not collective.
-void remove_unsettled(const std::string& directory) {
+void remove_oscillating(const std::string& directory) {
   std::error_code ignored;
   for (const char* end : {"", ".pvd", "_0000.pvtu"})
-    std::filesystem::remove_all(directory + '/' + unsettled_name + end, ignored);
+    std::filesystem::remove_all(directory + '/' + oscillating_name + end, ignored);
 }
 
-/// Removes the tables of a previous run, except those of fractures if the run is continued; ignores failures. Not
-/// collective.
+/// Removes tables of a previous run, of fractures unless the run is continued; ignores failures. Not collective.
 void remove_tables(const std::string& directory, bool goes_on) {
   std::error_code ignored;
   std::filesystem::remove(directory + "/probes.h5", ignored);
@@ -131,7 +130,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     const auto list = base::effective(as_read, "Sprekk");
     if (comm->getRank() != 0) return;
     io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
-    remove_unsettled(directory_);
+    remove_oscillating(directory_);
     remove_tables(directory_, earlier.has_value());
   });
   if (model_.scene().output.vtu) {
@@ -194,8 +193,7 @@ void Results::start_fractures(const std::vector<Real>& written) {
   if (base::on_any_rank(*mesh.comm, piece.n_cells() > 0)) fractures_->keep({"intersections", piece});
 }
 
-/// Begins the tables of probes. A table of the previous run is continued if its probe is unchanged. Other tables begin
-/// with the present state, where values are defined.
+/// Begins the tables of probes with the present state. A table of the previous run with the same probe is continued.
 void Results::start_probes(const std::optional<EarlierResults>& earlier) {
   auto& system = model_.system();
   bool known = true;
@@ -274,8 +272,8 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   for (const auto& linear : report.linear_solves)
     step["linear_solves"].push_back(
         {{"iterations", linear.iterations}, {"residual", linear.residual}, {"used", linear.used}});
-  if (report.converged && !report.loose.empty()) step["loose"] = report.loose;
-  if (!report.converged) step["unsettled_faces"] = add_unsettled(report);
+  if (report.converged && !report.floating.empty()) step["floating"] = report.floating;
+  if (!report.converged) step["oscillating_faces"] = add_oscillating(report);
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;
   if (!report.converged && report.substeps == 0) {  // state unchanged
     add(step);
@@ -285,7 +283,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   ends_.push_back(report.time);
   physics::for_each_physics([&]<physics::HasWarnings P>(P) {
     for (const auto& warning : P::Warnings::of_state(model_.setting(), ends_, outputs))
-      if (told_.insert(warning).second) warnings_.push_back(warning);
+      if (reported_.insert(warning).second) warnings_.push_back(warning);
   });
   add_fractures(step, outputs);
   add_error_bounds(step["fractures"], outputs);
@@ -349,7 +347,7 @@ void Results::start_estimator() {
 /// Adapts to the changed scene of the model, and perhaps to its changed mesh.
 void Results::follow_change() {
   n_changes_ = model_.n_changes();
-  probes_.look_again();
+  probes_.update_places();
   if (estimator_) start_estimator();
 }
 
@@ -397,16 +395,16 @@ json Results::reactions() {
 }
 
 /// Counts the oscillating faces and writes them to a file together with the state. Collective.
-long long Results::add_unsettled(const solve::StepReport& report) {
+long long Results::add_oscillating(const solve::StepReport& report) {
   const auto& mesh = model_.mesh();
-  std::vector<Real> flags(report.unsettled.begin(), report.unsettled.end());
+  std::vector<Real> flags(report.oscillating.begin(), report.oscillating.end());
   flags.resize(mesh.n_owned_fracture_faces);  // empty if no iterate was accepted
   const long long here = std::count(flags.begin(), flags.end(), 1);
   const auto n = base::sum_over_ranks(*mesh.comm, here);
   if (n == 0 || !bulk_) return n;
   auto piece = fractures_with(mesh, model_.system().outputs(model_.state()));
-  piece.cell_data.push_back(io::data_array("unsettled", 1, flags));
-  io::VtuSeries(mesh.comm, directory_, unsettled_name).write(report.time, piece);
+  piece.cell_data.push_back(io::data_array("oscillating", 1, flags));
+  io::VtuSeries(mesh.comm, directory_, oscillating_name).write(report.time, piece);
   return n;
 }
 
@@ -438,19 +436,19 @@ void Results::write_json() {
                      {"peak_bytes_all_ranks", base::sum_over_ranks(comm, here)}};
   auto& parts = json_["solver"]["parts"] = json::array();
   for (const auto& cost : model_.newton().linear().solver().solver->costs()) {
-    const auto most = base::max_over_ranks(
+    const auto maximum = base::max_over_ranks(
         comm, std::array<Real, 5>{cost.setup_seconds, cost.application_seconds, static_cast<Real>(cost.cycle_bytes),
                                   static_cast<Real>(cost.messages), static_cast<Real>(cost.message_bytes)});
     json of_levels = json::object();
     if (!cost.n_unknowns.empty())
-      of_levels = {{"levels", cost.n_unknowns.size()}, {"unknowns_of_levels", cost.n_unknowns},
-                   {"ranks_of_levels", cost.n_ranks},  {"cycle_bytes_largest_rank", most[2]},
-                   {"messages_largest_rank", most[3]}, {"message_bytes_largest_rank", most[4]}};
+      of_levels = {{"levels", cost.n_unknowns.size()},    {"unknowns_of_levels", cost.n_unknowns},
+                   {"ranks_of_levels", cost.n_ranks},     {"cycle_bytes_largest_rank", maximum[2]},
+                   {"messages_largest_rank", maximum[3]}, {"message_bytes_largest_rank", maximum[4]}};
     parts.push_back({{"name", cost.name},
                      {"setups", cost.n_setups},
                      {"applications", cost.n_applications},
-                     {"setup_seconds", most[0]},
-                     {"application_seconds", most[1]},
+                     {"setup_seconds", maximum[0]},
+                     {"application_seconds", maximum[1]},
                      {"operator_complexity", cost.operator_complexity},
                      {"bytes", base::sum_over_ranks(comm, static_cast<Real>(cost.bytes))}});
     parts.back().update(of_levels);

@@ -72,7 +72,7 @@ class Results {
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
   void start_fractures(const std::vector<Real>& written);  ///< continues their files after the steps at these times
-  long long add_unsettled(const solve::StepReport& report);
+  long long add_oscillating(const solve::StepReport& report);
   bool fields_are_due(const StepTaken& step) const;
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
   void write_json();
@@ -91,7 +91,7 @@ class Results {
   nlohmann::json json_, probes_begun_ = nlohmann::json::object();
   int n_steps_ = 0, n_written_ = 0;
   std::vector<Real> ends_;  // end times of the steps so far, s
-  std::set<std::string> told_;
+  std::set<std::string> reported_;
   std::vector<std::string> warnings_;
   std::map<std::string, Real> error_bounds_;
   std::chrono::steady_clock::time_point last_write_;

@@ -3,7 +3,7 @@
 #include "base/memory.hpp"
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
-#include "contact/grip.hpp"
+#include "contact/constraint.hpp"
 #include "io/directory_lock.hpp"
 #include "io/file.hpp"
 #include "laboratory/point.hpp"
@@ -138,7 +138,7 @@ void describe(const Model& model, base::Log& log) {
 }
 
 /// Logs the cost of each part of the preconditioner on this rank.
-void tell_costs(const Model& model, base::Log& log) {
+void report_costs(const Model& model, base::Log& log) {
   for (const auto& cost : model.newton().linear().solver().solver->costs()) {
     const auto multigrid = cost.operator_complexity > 0 ? fmt::format("; operator complexity {:.2f}, {:.0f} MB",
                                                                       cost.operator_complexity, 1e-6 * cost.bytes)
@@ -149,7 +149,7 @@ void tell_costs(const Model& model, base::Log& log) {
 }
 
 /// Warns if the floating blocks have changed.
-void tell_loose(base::Log& log, Real t, const std::string& before, const std::string& now) {
+void report_floating(base::Log& log, Real t, const std::string& before, const std::string& now) {
   if (now == before) return;
   if (now.empty())
     log.info("t = {:.6g}: all rock is constrained again", t);
@@ -184,7 +184,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
   const Scene& scene = model.scene();
   if (!steps.any()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
   Progress progress(log, steps);
-  std::string loose;
+  std::string floating;
   while (steps.any()) {
     bool interrupted = false;
     const auto taken = or_finished(results, [&] {
@@ -201,7 +201,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
       progress.add(taken, faces);
       if (!taken.warning.empty()) log.warning("t = {:.6g}: {}", step.time, taken.warning);
       for (const auto& warning : results.take_warnings()) log.warning("t = {:.6g}: {}", step.time, warning);
-      if (step.converged) tell_loose(log, step.time, std::exchange(loose, step.loose), step.loose);
+      if (step.converged) report_floating(log, step.time, std::exchange(floating, step.floating), step.floating);
       if (step.converged) checkpoints.after_step(results, last);
       log.check_file();
       return taken;
@@ -268,7 +268,7 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
     for (const auto& warning : model->warnings()) log.warning("{}", warning);
   Steps steps(*model);
   Checkpointing checkpoints(*model, steps, directory, log);
-  if (!options.restart) checkpoints.start_anew();
+  if (!options.restart) checkpoints.remove_checkpoints();
   const Scene as_read = model->scene();  // without the changes of stages
   std::optional<EarlierResults> earlier;
   if (options.restart) earlier = naming_file(options.scene, [&] { return checkpoints.restore(); });
@@ -278,7 +278,7 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
     adaptation.refine(*comm);
     return ending;
   }
-  tell_costs(*model, log);
+  report_costs(*model, log);
   for (const auto& line : results.fracture_digest()) log.info("{}", line);
   return ending;
 }

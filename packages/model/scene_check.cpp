@@ -156,7 +156,7 @@ Comparison compared(const Draft& draft, MeshNames names) {
 
 std::vector<std::string> misfits(const Draft& draft, const MeshNames& names) { return compared(draft, names).errors(); }
 
-mesh::GlobalMesh checked_mesh(const Draft& draft, std::string* unheld) {
+mesh::GlobalMesh checked_mesh(const Draft& draft, std::string* unconstrained) {
   const Scene& scene = draft.value;
   auto errors = draft.report.errors;
   const auto tell = [&](const std::string& what) { errors.push_back(scene.origin + ": " + what); };
@@ -181,10 +181,10 @@ mesh::GlobalMesh checked_mesh(const Draft& draft, std::string* unheld) {
   }
   errors.insert(errors.end(), comparison.errors().begin(), comparison.errors().end());
   if (!no_value.empty() && !errors.empty()) tell(no_value);
-  if (unheld)
-    *unheld = comparison.unheld();
-  else if (!comparison.unheld().empty())
-    tell(comparison.unheld());
+  if (unconstrained)
+    *unconstrained = comparison.unconstrained();
+  else if (!comparison.unconstrained().empty())
+    tell(comparison.unconstrained());
   base::throw_errors(errors);
   return std::move(*mesh);
 }

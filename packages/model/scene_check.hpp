@@ -18,8 +18,8 @@ std::vector<std::string> misfits(const base::Draft<Scene>& draft, const physics:
 
 /// Makes the mesh of the scene. Throws one Error with a line for each mistake. These are the report of the draft,
 /// mistakes of the mesh, and inconsistencies. Contradictory conditions at the end of the first step and rock without
-/// support are mistakes too. If unsupported rock is the only mistake and `unheld` is given, the message is stored there
-/// instead. Not collective.
-mesh::GlobalMesh checked_mesh(const base::Draft<Scene>& draft, std::string* unheld = nullptr);
+/// support are mistakes too. If unsupported rock is the only mistake and `unconstrained` is given, the message is
+/// stored there instead. Not collective.
+mesh::GlobalMesh checked_mesh(const base::Draft<Scene>& draft, std::string* unconstrained = nullptr);
 
 }  // namespace sprekk::model

@@ -22,7 +22,7 @@ solve::StepControlOptions options_of(const Time& time, Real end, bool rates) {
           .first = std::min(time.first_step.value_or(first * all), largest),
           .smallest = std::min(time.smallest_step.value_or(1e-9 * all), largest),
           .largest = largest,
-          .most_growth = time.scheme == "BDF2" ? 2.28 : 3};  // steps may be 1.05 times longer to meet a time
+          .max_growth = time.scheme == "BDF2" ? 2.28 : 3};  // steps may be 1.05 times longer to meet a time
 }
 
 }  // namespace
@@ -150,8 +150,8 @@ std::string limit_of_steps(Real dt, const StepTaken& step) {
       "the step of length {:.6g} is accepted with a relative error of {:.2g} of '{}', above Time > "
       "\"tolerance\", after {} rejected attempts: {}",
       dt, worst->value, worst->name, step.n_rejected,
-      step.n_rejected < solve::StepControl::most_rejections ? "shorter ones are below Time > \"smallest step\""
-                                                            : "there were too many in a row");
+      step.n_rejected < solve::StepControl::max_rejections ? "shorter ones are below Time > \"smallest step\""
+                                                           : "there were too many in a row");
 }
 
 }  // namespace

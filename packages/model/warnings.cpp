@@ -16,7 +16,7 @@ namespace {
 /// knot, the table deviates from a linear variation over the step by more than 0.05 of its range.
 std::pair<int, Real> passed_over(const TableOfTime& of, const Time& time) {
   const auto& table = *of.table;
-  const auto [least, most] = std::minmax_element(table.values.begin(), table.values.end());
+  const auto [minimum, maximum] = std::minmax_element(table.values.begin(), table.values.end());
   int n = 0;
   Real first = 0, begin = of.shift + of.factor * time.start;
   const auto inside = [&](Real s) { return s >= table.arguments.front() && s <= table.arguments.back(); };
@@ -27,7 +27,7 @@ std::pair<int, Real> passed_over(const TableOfTime& of, const Time& time) {
     const auto between = [&] { return knot != table.arguments.end() && *knot < std::max(begin, end); };
     for (; inside(begin) && inside(end) && between() && !misses; ++knot) {
       const Real s = (*knot - begin) / (end - begin), straight = (1 - s) * table(begin) + s * table(end);
-      misses = std::abs(table(*knot) - straight) > 0.05 * (*most - *least);
+      misses = std::abs(table(*knot) - straight) > 0.05 * (*maximum - *minimum);
       if (misses && n++ == 0) first = (*knot - of.shift) / of.factor;
     }
     begin = end;
@@ -88,7 +88,7 @@ std::vector<std::string> Model::warnings() const {
   const auto times = looked_at(scene_);
   std::vector<std::string> all;
   const auto add = [&](const std::vector<std::string>& some) { all.insert(all.end(), some.begin(), some.end()); };
-  add(physics::conditions_that_hold_nowhere(scene_, mesh()));
+  add(physics::conditions_without_effect(scene_, mesh()));
   add(physics::properties_passed_over(scene_, mesh()));
   physics::for_each_physics([&]<physics::HasSolvability P>(P) { add(P::Solvability::doubts(setting(), true)); });
   physics::for_each_physics([&](auto physics) { add(physics.warnings(setting())); });

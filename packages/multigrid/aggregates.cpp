@@ -83,10 +83,10 @@ std::vector<bool> weak_couplings(const NodeMatrix& A) {
     for (std::size_t k = 0; k < n; ++k) {
       const LocalIndex j = graph.column(begin + k);
       const Real size = std::sqrt(diagonal(i) * diagonal(j));
-      Real most = 0;
+      Real maximum = 0;
       for (int r = 0; r < A.height; ++r)
-        most = std::fmax(most, largest(&A.value(A.height * A.width * begin + (r * n + k) * A.width), A.width));
-      weak[begin + k] = j != i && most > rounding * size && most < strong * size;
+        maximum = std::fmax(maximum, largest(&A.value(A.height * A.width * begin + (r * n + k) * A.width), A.width));
+      weak[begin + k] = j != i && maximum > rounding * size && maximum < strong * size;
     }
   }
   return weak;
@@ -122,14 +122,14 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
     for (std::size_t k = 0; k < n; ++k) {
       const LocalIndex j = graph.column(begin + k);
       const Real zero = rounding * std::sqrt(diagonal(i) * diagonal(j));
-      Real most = 0;
+      Real maximum = 0;
       for (int r = 0; r < size; ++r) {
         const Real* const row = &A.value(size * size * begin + (r * n + k) * size);
         const Real here = j != i ? largest(row, size) : std::fmax(largest(row, r), largest(row + r + 1, size - r - 1));
         prescribed[r] = prescribed[r] && here <= zero;
-        if (j != i) most = std::fmax(most, here);
+        if (j != i) maximum = std::fmax(maximum, here);
       }
-      if (most <= zero) continue;
+      if (maximum <= zero) continue;
       if (!nodes.weak.empty() && nodes.weak[begin + k]) continue;
       nodes.free[i] = true;
       if (j < n_rows)

@@ -32,14 +32,14 @@ RCP<CrsMatrix> renumbered(const RCP<const CrsMatrix>& A) {
 
 }  // namespace
 
-DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name, int most_ranks)
+DirectInverse::DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name, int max_ranks)
     : name_(name), map_(A->getRowMap()), A_(renumbered(A)), from_(A_->getRowMap()), to_(A_->getRowMap()) {
   const auto n = static_cast<int>(A_->getGlobalNumRows());
-  if (n > most_dense)
+  if (n > max_dense)
     mumps_ = std::make_unique<Mumps>(Teuchos::ParameterList()
                                          .set("ICNTL(7)", 2, "ordering: approximate minimum fill, soon found")
                                          .set("ICNTL(8)", 1, "scaling: by the diagonal"),
-                                     std::clamp(n / least_of_a_rank, 1, most_ranks));
+                                     std::clamp(n / minimum_per_rank, 1, max_ranks));
 }
 
 void DirectInverse::setup(bool symmetric) {

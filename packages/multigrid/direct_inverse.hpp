@@ -14,11 +14,11 @@ namespace sprekk::multigrid {
 /// rank. The graph must not change.
 class DirectInverse : public fields::Operator {
  public:
-  static constexpr int most_dense = 300;        ///< largest number of unknowns for dense factors
-  static constexpr int least_of_a_rank = 2000;  ///< unknowns; twice as many gain little on two ranks
+  static constexpr int max_dense = 300;          ///< largest number of unknowns for dense factors
+  static constexpr int minimum_per_rank = 2000;  ///< unknowns; twice as many gain little on two ranks
 
   /// Prepares the factors. `name` begins error messages. On several ranks, the last bits vary. Collective.
-  DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name, int most_ranks = 1);
+  DirectInverse(const RCP<const CrsMatrix>& A, const std::string& name, int max_ranks = 1);
 
   /// Factorises the present values. Throws an Error on all ranks if they are singular. Collective.
   void setup(bool symmetric);

@@ -149,7 +149,7 @@ void Galerkin::update(const NodeMatrix& A, const View<Real*>& inverse_diagonal, 
   const View<Real*> AP(Kokkos::view_alloc("slice of A P", Kokkos::WithoutInitializing), block * slices_.size);
   const auto& [first, first_made] = std::tie(slices_.first, slices_.first_made);
   multiply_right(A, AP, first_made[0], first_made[1]);
-  fine_.columns->exchange_rows(slices_.start_kept, AP, block);
+  fine_.columns->exchange_rows(slices_.start_saved, AP, block);
   for (int s = 0; s < slices_.n(); ++s) {
     multiply_right(A, AP, first_made[s + 1], first_made[s + 2]);
     multiply_left(AP, first[s], first[s + 1]);

@@ -17,15 +17,15 @@ using Policy = Kokkos::RangePolicy<Execution>;
 /// Relative increase of the diagonal of the last matrix, which would be singular for floating parts of rock.
 constexpr Real raise = 1e-8;
 
-constexpr Real most_growth = 5;  // largest growth of the residual in a cycle
-constexpr int most_widenings = 4;
-constexpr int most_degree = 200, most_finest_degree = 24;
+constexpr Real max_growth = 5;  // largest growth of the residual in a cycle
+constexpr int max_widenings = 4;
+constexpr int max_degree = 200, max_finest_degree = 24;
 
 /// Largest ratio of coarse to fine nodes. Above it, coarsening ends: nodes are isolated, or there is one per rank.
-constexpr Real least_coarsening = 0.8;
+constexpr Real min_coarsening = 0.8;
 
 /// Smallest average number of nodes per rank; below it, a level moves to fewer ranks.
-constexpr int least_nodes = 30;
+constexpr int min_nodes = 30;
 
 /// Returns the minimum number of nodes per aggregate on the finest level. In 3D a coarse node has six unknowns. Small
 /// aggregates, as in tetrahedra, would make the coarser levels half as expensive as the finest, in memory and time. In
@@ -51,7 +51,7 @@ std::size_t enough_for(const Nodes& nodes, const Comm& comm) {
 /// large for them, by up to the square of the aspect ratio. Coarse nodes represent them while cells are coarsened
 /// across short edges. On the level where this ends, only the smoother reduces them.
 int degree_for(Real flatness, int degree) {
-  return std::max(degree, static_cast<int>(std::lround(std::min<Real>(2 * flatness, most_degree))));
+  return std::max(degree, static_cast<int>(std::lround(std::min<Real>(2 * flatness, max_degree))));
 }
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
@@ -86,7 +86,7 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
     Nodes coarse;
     const auto tentative = tentative_prolongator(nodes, aggregates, coarse);
     auto galerkin = std::make_unique<Galerkin>(A, nodes, aggregates, tentative);
-    if (n_nodes(galerkin->coarse()) > least_coarsening * n_nodes(A)) break;
+    if (n_nodes(galerkin->coarse()) > min_coarsening * n_nodes(A)) break;
     coarsen_beyond(A.graph, nodes, galerkin->aggregate(), *galerkin->coarse().graph.columns->all(), coarse);
     auto moved = on_fewer_ranks(*galerkin, coarse);
     levels_.back().smoother = std::make_unique<Chebyshev>(A);
@@ -106,7 +106,7 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
     add_level(next, std::move(moved));
   }
   for (const auto& level : levels_)
-    levels_.front().degree = std::max(levels_.front().degree, std::min(level.degree, most_finest_degree));
+    levels_.front().degree = std::max(levels_.front().degree, std::min(level.degree, max_finest_degree));
   std::array<double, 2> here{static_cast<double>(levels_.front().A.value.extent(0)), 0};
   for (const auto& level : levels_) here[1] += level.A.value.extent(0);
   const auto all = base::sum_over_ranks(*map_->getComm(), here);
@@ -119,9 +119,9 @@ std::unique_ptr<FewerRanks> Multigrid::on_fewer_ranks(const Galerkin& galerkin, 
   const auto& coarse = galerkin.coarse();
   const auto numbers = base::sum_over_ranks(*map_->getComm(), static_cast<double>(coarse.value.extent(0)));
   const bool is_last = n_nodes(coarse) * coarse.height <= options_.coarse_size;
-  const double n_ranks = n_ranks_of(coarse.graph),
-               most = std::min(numbers / options_.least_of_a_rank, static_cast<double>(n_nodes(coarse)) / least_nodes);
-  const double wanted = is_last ? 1 : most / 2;
+  const double n_ranks = n_ranks_of(coarse.graph), maximum = std::min(numbers / options_.minimum_per_rank,
+                                                                      static_cast<double>(n_nodes(coarse)) / min_nodes);
+  const double wanted = is_last ? 1 : maximum / 2;
   if (n_ranks <= 1 || 2 * wanted > n_ranks) return nullptr;
   return std::make_unique<FewerRanks>(coarse, galerkin.prolongation(), nodes,
                                       std::max(1, static_cast<int>(std::lround(wanted))));
@@ -162,14 +162,13 @@ void Multigrid::setup(const RCP<const Matrix>& matrix, bool symmetric, bool care
   for (auto& level : levels_) {
     if (level.moved) level.moved->update(*above);
     if (!level.to_coarse) continue;
-    const int least = &level == &levels_.front() ? options_.finest_degree : 0;
-    level.smoother->update(level.A, symmetric ? level.degree : std::max(options_.degree, least));
+    const int minimum = &level == &levels_.front() ? options_.finest_degree : 0;
+    level.smoother->update(level.A, symmetric ? level.degree : std::max(options_.degree, minimum));
     level.to_coarse->update(level.A, level.smoother->damped_inverse_diagonal(), symmetric);
     above = &level.to_coarse->coarse();
   }
   base::collectively(*map_->getComm(), [&] { factor_last(symmetric); });
-  for (int widenings = 0; careful && !symmetric && !(growth() <= most_growth) && widenings < most_widenings;
-       ++widenings)
+  for (int widenings = 0; careful && !symmetric && !(growth() <= max_growth) && widenings < max_widenings; ++widenings)
     for (auto& level : levels_)
       if (level.smoother) level.smoother->widen();
 }

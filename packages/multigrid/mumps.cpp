@@ -37,7 +37,7 @@ std::string message(const DMUMPS_STRUC_C& mumps) {
 
 }  // namespace
 
-Mumps::Mumps(const Teuchos::ParameterList& overrides, int most_ranks) : parameters_("MUMPS"), most_ranks_(most_ranks) {
+Mumps::Mumps(const Teuchos::ParameterList& overrides, int max_ranks) : parameters_("MUMPS"), max_ranks_(max_ranks) {
   parameters_.set("ICNTL(7)", 7, "ordering: automatic");
   parameters_.set("ICNTL(14)", 40, "extra work space, percent");
   parameters_.setParameters(overrides);
@@ -113,9 +113,9 @@ void Mumps::start(bool symmetric) {
   to_root_ = rcp(new fields::Import(matrix_->getRowMap(), root_map));
   from_root_ = rcp(new fields::Import(root_map, matrix_->getRowMap()));
   at_root_ = rcp(new Vector(root_map));
-  gathers_ = most_ranks_ < comm_->getSize();
+  gathers_ = max_ranks_ < comm_->getSize();
   const auto factored = gathers_ ? places_on_root() : matrix_;
-  MPI_Comm_split(all_ranks(), comm_->getRank() < most_ranks_ ? 0 : MPI_UNDEFINED, comm_->getRank(), &mpi_comm_);
+  MPI_Comm_split(all_ranks(), comm_->getRank() < max_ranks_ ? 0 : MPI_UNDEFINED, comm_->getRank(), &mpi_comm_);
   symmetric_ = symmetric;
   mumps_ = {};
   if (mpi_comm_ != MPI_COMM_NULL) mumps_.comm_fortran = MPI_Comm_c2f(mpi_comm_);

@@ -20,9 +20,9 @@ using fields::Vector;
 /// collective and return the same on all ranks, unless they return stored data.
 class Mumps {
  public:
-  /// `controls`: ICNTL(i) and CNTL(i), which override the defaults. Ranks 0 to most_ranks - 1 share the factors. One
+  /// `controls`: ICNTL(i) and CNTL(i), which override the defaults. Ranks 0 to max_ranks - 1 share the factors. One
   /// rank adds in the same order every time. Throws an Error for unknown controls.
-  Mumps(const Teuchos::ParameterList& controls, int most_ranks);
+  Mumps(const Teuchos::ParameterList& controls, int max_ranks);
   ~Mumps();
   Mumps(const Mumps&) = delete;
   Mumps& operator=(const Mumps&) = delete;
@@ -48,7 +48,7 @@ class Mumps {
   void release();
 
   Teuchos::ParameterList parameters_;
-  const int most_ranks_;  // ranks that share the factors
+  const int max_ranks_;  // ranks that share the factors
   RCP<const Comm> comm_;
   std::map<int, int> icntl_;    // by i - 1
   std::map<int, double> cntl_;  // by i - 1

@@ -4,10 +4,10 @@
 namespace sprekk::multigrid {
 
 struct Options {
-  int degree = 4;                ///< Chebyshev degree, at least 1; higher for flat cells in contact
-  int finest_degree = 0;         ///< smallest degree on the finest level
-  int coarse_size = 300;         ///< levels with at most this number of unknowns are solved directly
-  int least_of_a_rank = 100000;  ///< matrix entries per rank; with fewer, a level moves to fewer ranks
+  int degree = 4;                 ///< Chebyshev degree, at least 1; higher for flat cells in contact
+  int finest_degree = 0;          ///< smallest degree on the finest level
+  int coarse_size = 300;          ///< levels with at most this number of unknowns are solved directly
+  int minimum_per_rank = 100000;  ///< matrix entries per rank; with fewer, a level moves to fewer ranks
 };
 
 }  // namespace sprekk::multigrid

@@ -34,8 +34,8 @@ void RoundedMatrix::update(const NodeMatrix& A, const View<Real*>& scale) {
         "round", Kokkos::RangePolicy<Execution>(0, graph_.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
           const std::size_t begin = start(i), n = start(i + 1) - begin;
           for (int r = 0; r < b; ++r) {
-            const auto store = [&](Real most) {  // returns the largest magnitude
-              const Real factor = largest_number / most;
+            const auto store = [&](Real maximum) {  // returns the largest magnitude
+              const Real factor = largest_number / maximum;
               Real largest = 0;
               for (std::size_t k = 0; k < n; ++k)
                 for (int c = 0; c < b; ++c) {
@@ -45,7 +45,7 @@ void RoundedMatrix::update(const NodeMatrix& A, const View<Real*>& scale) {
                   largest = size_of_it > largest || size_of_it != size_of_it ? size_of_it : largest;
                   value(b * b * (begin + k) + c * b + r) = nearest(factor * number);
                 }
-              unit(i * b + r) = static_cast<float>(most / largest_number);
+              unit(i * b + r) = static_cast<float>(maximum / largest_number);
               return largest;
             };
             if (const Real largest = store(1); !(largest <= exceeds_one)) store(largest);

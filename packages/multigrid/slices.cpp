@@ -7,8 +7,8 @@
 namespace sprekk::multigrid {
 namespace {
 
-constexpr int most_slices = 32;
-constexpr Real most_repeated = 0.15;  // of the entries of A P
+constexpr int max_slices = 32;
+constexpr Real max_repeated = 0.15;  // of the entries of A P
 
 std::vector<LocalIndex> cut(LocalIndex n_rows, int n_slices) {
   std::vector<LocalIndex> first;
@@ -17,24 +17,24 @@ std::vector<LocalIndex> cut(LocalIndex n_rows, int n_slices) {
   return first;
 }
 
-/// Calls visit(slice, row) for the rows of A P that a slice computes: those it needs that are neither kept nor in the
+/// Calls visit(slice, row) for the rows of A P that a slice computes: those it needs that are neither saved nor in the
 /// buffer from the previous slice.
 template <class Visit>
-void for_rows(const NodeGraph& R, const std::vector<LocalIndex>& first, const View<std::size_t*>& start_kept,
+void for_rows(const NodeGraph& R, const std::vector<LocalIndex>& first, const View<std::size_t*>& start_saved,
               const Visit& visit) {
   std::vector<int> made_by(R.columns->n_all(), -2);
   for (int s = 0; s + 1 < static_cast<int>(first.size()); ++s)
     for (std::size_t e = R.start(first[s]); e < R.start(first[s + 1]); ++e) {
       const LocalIndex row = R.column(e);
-      if (start_kept(row + 1) > start_kept(row) || made_by[row] >= s - 1) continue;
+      if (start_saved(row + 1) > start_saved(row) || made_by[row] >= s - 1) continue;
       made_by[row] = s;
       visit(s, row);
     }
 }
 
-/// Returns the starts of kept rows: rows needed by other ranks, and ghost rows.
-View<std::size_t*> start_of_kept(const Halo& halo, const View<std::size_t*>& start) {
-  const View<std::size_t*> result("start of kept rows", halo.n_all() + 1);
+/// Returns the starts of saved rows: rows needed by other ranks, and ghost rows.
+View<std::size_t*> start_of_saved(const Halo& halo, const View<std::size_t*>& start) {
+  const View<std::size_t*> result("start of saved rows", halo.n_all() + 1);
   const auto keep = [&](LocalIndex row) { result(row + 1) = start(row + 1) - start(row); };
   for (const LocalIndex row : halo.sent_nodes()) keep(row);
   for (LocalIndex row = halo.n_owned(); row < halo.n_all(); ++row) keep(row);
@@ -45,36 +45,36 @@ View<std::size_t*> start_of_kept(const Halo& halo, const View<std::size_t*>& sta
 }  // namespace
 
 std::size_t Slices::bytes() const {
-  return sizeof(std::size_t) * (to.extent(0) + start_kept.extent(0) + at.extent(0)) +
+  return sizeof(std::size_t) * (to.extent(0) + start_saved.extent(0) + at.extent(0)) +
          sizeof(LocalIndex) * made.extent(0);
 }
 
 Slices make_slices(const NodeGraph& R, const View<std::size_t*>& start) {
   const auto& halo = *R.columns;
   Slices slices;
-  slices.start_kept = start_of_kept(halo, start);
+  slices.start_saved = start_of_saved(halo, start);
   const auto length = [&](LocalIndex row) { return start(row + 1) - start(row); };
   const auto n_entries = [&](int n_slices) {
     std::size_t sum = 0;
-    for_rows(R, cut(R.n_rows(), n_slices), slices.start_kept, [&](int, LocalIndex row) { sum += length(row); });
+    for_rows(R, cut(R.n_rows(), n_slices), slices.start_saved, [&](int, LocalIndex row) { sum += length(row); });
     return sum;
   };
-  const auto most = static_cast<std::size_t>((1 + most_repeated) * static_cast<Real>(n_entries(1)));
-  int n = most_slices;
-  while (n > 1 && n_entries(n) > most) n -= (n + 3) / 4;
+  const auto maximum = static_cast<std::size_t>((1 + max_repeated) * static_cast<Real>(n_entries(1)));
+  int n = max_slices;
+  while (n > 1 && n_entries(n) > maximum) n -= (n + 3) / 4;
   slices.first = cut(R.n_rows(), n);
 
-  const auto kept = slices.start_kept;
+  const auto saved = slices.start_saved;
   std::vector<LocalIndex> made;
   std::vector<std::size_t> to, length_of(n, 0);  // of slices
   slices.first_made.assign(n + 2, 0);
   for (LocalIndex row = 0; row < halo.n_owned(); ++row)
-    if (kept(row + 1) > kept(row)) {
+    if (saved(row + 1) > saved(row)) {
       made.push_back(row);
-      to.push_back(kept(row));
+      to.push_back(saved(row));
       ++slices.first_made[1];
     }
-  for_rows(R, slices.first, kept, [&](int s, LocalIndex row) {
+  for_rows(R, slices.first, saved, [&](int s, LocalIndex row) {
     made.push_back(row);
     to.push_back(length_of[s]);
     length_of[s] += length(row);
@@ -83,13 +83,13 @@ Slices make_slices(const NodeGraph& R, const View<std::size_t*>& start) {
   std::partial_sum(slices.first_made.begin(), slices.first_made.end(), slices.first_made.begin());
   std::size_t length_of_part[2] = {};
   for (int s = 0; s < n; ++s) length_of_part[s % 2] = std::max(length_of_part[s % 2], length_of[s]);
-  const std::size_t first_of_part[] = {kept(halo.n_all()), kept(halo.n_all()) + length_of_part[0]};
+  const std::size_t first_of_part[] = {saved(halo.n_all()), saved(halo.n_all()) + length_of_part[0]};
   slices.size = first_of_part[1] + length_of_part[1];
   for (int s = 0; s < n; ++s)
     for (std::size_t k = slices.first_made[s + 1]; k < slices.first_made[s + 2]; ++k) to[k] += first_of_part[s % 2];
 
   slices.at = View<std::size_t*>("places of rows", halo.n_all());
-  std::copy_n(kept.data(), halo.n_all(), slices.at.data());
+  std::copy_n(saved.data(), halo.n_all(), slices.at.data());
   slices.made = View<LocalIndex*>("rows to make", made.size());
   std::copy(made.begin(), made.end(), slices.made.data());
   slices.to = View<std::size_t*>("where to make them", to.size());

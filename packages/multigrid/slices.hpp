@@ -15,7 +15,7 @@ struct Slices {
   std::vector<std::size_t> first_made;  ///< [1 + slice + 1] first entry of `made`; the rows that stay come first
   View<LocalIndex*> made;               ///< owned rows of A P in the order of their computation
   View<std::size_t*> to;                ///< [made] start of the row in the buffer, in entries
-  View<std::size_t*> start_kept;        ///< [all rows + 1] start of rows that stay in the buffer; others are empty
+  View<std::size_t*> start_saved;       ///< [all rows + 1] start of rows that stay in the buffer; others are empty
   View<std::size_t*> at;  ///< [all rows] present start of a row: always for rows that stay, others once computed
   std::size_t size = 0;   ///< size of the buffer in entries
 

@@ -178,7 +178,7 @@ std::vector<transport::FluxCondition> flux_conditions(const Scene& scene, const 
   return conditions;
 }
 
-std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh) {
+std::vector<std::string> conditions_without_effect(const Scene& scene, const mesh::Mesh& mesh) {
   const auto n = mesh.region_names.size();
   std::vector<int> here(mesh.boundary_names.size() * n, 0);
   for (const auto& face : mesh.boundary_faces) here[face.boundary * n + mesh.cell_region[face.cell]] = 1;

@@ -53,7 +53,7 @@ class Comparison {
   /// Adds an error without a location of its own.
   void add(const std::string& what) { errors_.push_back(scene_.origin + ": " + what); }
   /// Sets a message about unsupported rock. It is an error unless modules that are not known yet support the rock.
-  void fail_unheld(const std::string& what) { unheld_ = what; }
+  void fail_unconstrained(const std::string& what) { unconstrained_ = what; }
   /// Returns whether the name used in `section` is one of the allowed names. Reports an error otherwise.
   bool check_name(const std::string& section, const std::string& place, const std::string& name,
                   const std::optional<Names>& allowed);
@@ -80,7 +80,7 @@ class Comparison {
   void compare();
   void compare(const mesh::GlobalMesh& mesh);
   const Names& errors() const { return errors_; }
-  const std::string& unheld() const { return unheld_; }
+  const std::string& unconstrained() const { return unconstrained_; }
 
  private:
   void check_material(const std::string& section, const std::string& name, const std::string& type);
@@ -95,7 +95,7 @@ class Comparison {
   Names tied_;
   std::optional<Real> begin_;
   Names errors_;
-  std::string unheld_;
+  std::string unconstrained_;
 };
 
 /// Conditions that prescribe unknowns of `field` ("": all fields) on a mesh with all names. Conditions of boundaries
@@ -114,6 +114,6 @@ std::vector<transport::FluxCondition> flux_conditions(const Scene& scene, const 
                                                       const FluxEntries& entries, bool of_fractures = false);
 
 /// Returns a line for each boundary condition whose region does not touch its boundary. Collective.
-std::vector<std::string> conditions_that_hold_nowhere(const Scene& scene, const mesh::Mesh& mesh);
+std::vector<std::string> conditions_without_effect(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

@@ -24,7 +24,7 @@ View<LocalIndex*> numbers_of(const View<char*>& chosen) {
 }  // namespace
 
 void start_from_bulk(const CondensedBlock& condensed) {
-  if (condensed.kept) return condensed.kept->restore(*condensed.matrix);
+  if (condensed.saved) return condensed.saved->restore(*condensed.matrix);
   const auto to = condensed.matrix->numbers();
   Kokkos::deep_copy(to.value, 0.0);
   if (condensed.bulk.is_null()) return;
@@ -57,7 +57,7 @@ View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_f
 }
 
 void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& groups, int r, int n_remaining) {
-  if (!condensed.kept) return;
+  if (!condensed.saved) return;
   const auto numbers = condensed.matrix->numbers();
   const View<char*> changes("changes", numbers.n_rows());
   const Policy rows(0, changes.extent(0));
@@ -68,7 +68,7 @@ void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& gro
           if (first(row) < first(row + 1)) changes(row) = 1;
         });
   }
-  const auto marks = condensed.kept->marks(changes);
+  const auto marks = condensed.saved->marks(changes);
   for (const auto& group : groups) {
     const auto coupling = group.coupling[r];
     const auto column_start = group.response[r].column_start;
@@ -86,12 +86,12 @@ void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& gro
         n_missing);
     check_found(n_missing);
   }
-  condensed.kept->keep(marks);
-  condensed.rows = condensed.kept->rows();
+  condensed.saved->keep(marks);
+  condensed.rows = condensed.saved->rows();
 }
 
 void keep_held(CondensedBlock& condensed, const Vector& row_flags, const RCP<const Vector>& diagonal) {
-  if (!condensed.kept) return;
+  if (!condensed.saved) return;
   const auto numbers = condensed.matrix->numbers();
   const View<char*> changes("changes", numbers.n_rows());
   const Policy rows(0, changes.extent(0));
@@ -104,7 +104,7 @@ void keep_held(CondensedBlock& condensed, const Vector& row_flags, const RCP<con
       "raised rows", rows, KOKKOS_LAMBDA(LocalIndex row) {
         if (added(row) != 0) changes(row) = 1;
       });
-  const auto marks = condensed.kept->marks(changes);
+  const auto marks = condensed.saved->marks(changes);
   const OwnColumn own_column(*condensed.matrix);
   const auto row_flag = read_values(row_flags);
   const auto column_flag = condensed.constrained;
@@ -117,8 +117,8 @@ void keep_held(CondensedBlock& condensed, const Vector& row_flags, const RCP<con
           if (row_flag(row) != 0 || column_flag(column) != 0 || column == raised) marks.set(row, k - begin);
         });
       });
-  condensed.kept->keep(marks);
-  condensed.rows = condensed.kept->rows();
+  condensed.saved->keep(marks);
+  condensed.rows = condensed.saved->rows();
 }
 
 void constrain(const CondensedBlock& condensed, const Vector& row_flags, bool diagonal) {

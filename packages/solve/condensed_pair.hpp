@@ -16,7 +16,7 @@ class CondensedPair : public Preconditioner {
   CondensedPair(const BlockOptions& options, const std::vector<Block>& pair);
 
   bool is_symmetric() const override { return false; }
-  bool can_be_kept() const override { return false; }
+  bool can_be_reused() const override { return false; }
   std::vector<SolverCost> costs() const override { return multigrid_->costs(); }
   void describe(Teuchos::ParameterList& blocks) const override;
 

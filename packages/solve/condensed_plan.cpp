@@ -52,7 +52,7 @@ class CondensedPlanner {
 
   /// Returns A_ab with all its columns, or the matrix that stores it.
   RCP<const Matrix> bulk(int a, int b) const {
-    if (a == b && problem_.matrix().kept(a)) return problem_.matrix().kept(a)->J();
+    if (a == b && problem_.matrix().saved(a)) return problem_.matrix().saved(a)->J();
     return matrix(a, b).is_null() ? Teuchos::null : fields::wrapped(matrix(a, b));
   }
 

@@ -34,7 +34,7 @@ class Factors : public fields::Operator {
 
 class DirectSolver : public LinearSolver {
  public:
-  DirectSolver(const Teuchos::ParameterList& controls, int most_ranks) : mumps_(controls, most_ranks) {}
+  DirectSolver(const Teuchos::ParameterList& controls, int max_ranks) : mumps_(controls, max_ranks) {}
 
   bool reads_matrix() const override { return true; }
 
@@ -89,7 +89,7 @@ class DirectSolver : public LinearSolver {
     matrix_->getLocalDiagCopy(Dx);
     Dx.elementWiseMultiply(1, x, Dx, 0);
     return std::min(64 * std::numeric_limits<Real>::epsilon() * Dx.norm2() / b.norm2(),
-                    balances_ ? most_noise_of_rates : most_noise);
+                    balances_ ? max_noise_of_rates : max_noise);
   }
 
   /// Corrects x by GMRES preconditioned by the factors. It permits less accurate factors than refinement, which
@@ -101,7 +101,7 @@ class DirectSolver : public LinearSolver {
     try {
       const auto factors = rcp(new Factors(mumps_, x.getMap()));
       report.iterations += krylov(matrix_, factors, krylov_defaults(), "Block GMRES", r, dx,
-                                  std::min(0.1 * acceptable / before, 0.1), most_corrections)
+                                  std::min(0.1 * acceptable / before, 0.1), max_corrections)
                                .iterations;
     } catch (const std::exception&) {
       return;  // keep the result of refinement
@@ -113,8 +113,8 @@ class DirectSolver : public LinearSolver {
     Tpetra::deep_copy(x, dx);
   }
 
-  static constexpr int most_corrections = 30;
-  static constexpr Real most_noise = 1e-2, most_noise_of_rates = 0.5;
+  static constexpr int max_corrections = 30;
+  static constexpr Real max_noise = 1e-2, max_noise_of_rates = 0.5;
   multigrid::Mumps mumps_;
   RCP<const CrsMatrix> matrix_;
   bool balances_ = false;
@@ -123,8 +123,8 @@ class DirectSolver : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps, int most_ranks) {
-  return std::make_unique<DirectSolver>(mumps, most_ranks);
+std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps, int max_ranks) {
+  return std::make_unique<DirectSolver>(mumps, max_ranks);
 }
 
 }  // namespace sprekk::solve

@@ -77,12 +77,12 @@ struct GroupPlan {
 /// Block J_ab; the matrix is null if a and b do not couple.
 struct CondensedBlock {
   RCP<const Matrix> matrix;
-  RCP<const Matrix> bulk;                  ///< A_ab; null: absent, or stored in J_ab
-  View<LocalIndex*> bulk_column;           ///< [column of A_ab] column in J_ab
-  std::shared_ptr<fields::KeptRows> kept;  ///< saved values of A_ab if J_ab stores it, or null
-  View<LocalIndex*> rows;                  ///< if J_ab stores A_ab: rows that may differ from it; else all rows
-  View<LocalIndex*> held;                  ///< rows of prescribed unknowns, and rows with such a column
-  View<char*> constrained;                 ///< [column] 1 for prescribed unknowns
+  RCP<const Matrix> bulk;                    ///< A_ab; null: absent, or stored in J_ab
+  View<LocalIndex*> bulk_column;             ///< [column of A_ab] column in J_ab
+  std::shared_ptr<fields::SavedRows> saved;  ///< saved values of A_ab if J_ab stores it, or null
+  View<LocalIndex*> rows;                    ///< if J_ab stores A_ab: rows that may differ from it; else all rows
+  View<LocalIndex*> held;                    ///< rows of prescribed unknowns, and rows with such a column
+  View<char*> constrained;                   ///< [column] 1 for prescribed unknowns
 };
 
 struct EliminationPlan {

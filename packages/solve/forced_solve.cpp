@@ -6,7 +6,7 @@ namespace sprekk::solve {
 namespace {
 
 constexpr Real first_accuracy = 1e-3, next_accuracy = 1e-2, safety = 1e-2;
-constexpr int most_refinements = 20;  // more than powers of next_accuracy
+constexpr int max_refinements = 20;  // more than powers of next_accuracy
 
 void add(Real factor, const BlockVector& from, BlockVector& to) {
   for (std::size_t b = 0; b < to.size(); ++b) to[b]->update(factor, *from[b], 1);
@@ -52,7 +52,7 @@ Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
 
 LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
   if (!solve_.forcing()) return solve_.solve(b, dx, tolerance);
-  const Real settled = std::max(tolerance, std::min(next_accuracy * first_accuracy, accuracy_without_change(b)));
+  const Real state_accuracy = std::max(tolerance, std::min(next_accuracy * first_accuracy, accuracy_without_change(b)));
   Real asked = std::max(first_accuracy, tolerance);
   auto report = solve_.solve(b, dx, asked);
   if (asked == tolerance || !report.converged || report.residual <= tolerance) return report;
@@ -60,8 +60,8 @@ LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tole
   const auto before = globalisation.state_hash(globalisation.states(x_));
   auto r = fields::create_like(b), correction = fields::create_like(b);
   auto states = states_after(dx);
-  for (int k = 0; k < most_refinements && report.converged && report.residual > tolerance && asked > tolerance; ++k) {
-    asked = states == before ? settled : std::max(next_accuracy * std::min(asked, report.residual), tolerance);
+  for (int k = 0; k < max_refinements && report.converged && report.residual > tolerance && asked > tolerance; ++k) {
+    asked = states == before ? state_accuracy : std::max(next_accuracy * std::min(asked, report.residual), tolerance);
     if (report.residual <= asked) break;
     apply(dx, r);
     for (std::size_t i = 0; i < r.size(); ++i) r[i]->update(1, *b[i], -1);

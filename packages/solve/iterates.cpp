@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t memory = 3, patience = 5, trial_period = 10, short_steps = 4;
 constexpr int lately = 5;
-constexpr Real least_way = 0.5, swing_damping = 0.3;
+constexpr Real min_way = 0.5, swing_damping = 0.3;
 
 }  // namespace
 
@@ -70,7 +70,7 @@ std::vector<char> Iterates::changed_lately() const {
 
 bool Iterates::stagnate(bool storage) const {
   if (storage && steps_.size() >= short_steps &&
-      std::accumulate(steps_.end() - short_steps, steps_.end(), 0.0) < least_way)
+      std::accumulate(steps_.end() - short_steps, steps_.end(), 0.0) < min_way)
     return true;
   if (merits_.size() < trial_period) return false;
   const auto recent = merits_.end() - patience;

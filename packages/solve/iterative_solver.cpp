@@ -80,8 +80,8 @@ class IterativeSolver : public LinearSolver {
   /// Keeps multigrid of an earlier matrix as long as solves remain fast.
   std::string setup(const LinearSystem& system) override {
     if (coarse_) return coarse_->setup(system);
-    const bool keeps = reuse_.may_keep() && preconditioner_->can_be_kept() && system.symmetric == system_.symmetric &&
-                       !system.diagonal.front().matrix.is_null() && n_changed(system) <= most_changed;
+    const bool keeps = reuse_.may_keep() && preconditioner_->can_be_reused() && system.symmetric == system_.symmetric &&
+                       !system.diagonal.front().matrix.is_null() && n_changed(system) <= max_changed;
     system_ = system;
     system_.reproducible = reproducible_;
     symmetric_ = system.symmetric && preconditioner_->is_symmetric();
@@ -147,7 +147,7 @@ class IterativeSolver : public LinearSolver {
 
   /// Returns the round-off of scaled rows relative to b: the terms of each row are as large as x.
   static Real noise(const Vector& b, const Vector& x) {
-    return std::min(16 * std::numeric_limits<Real>::epsilon() * x.norm2() / b.norm2(), most_noise);
+    return std::min(16 * std::numeric_limits<Real>::epsilon() * x.norm2() / b.norm2(), max_noise);
   }
 
   LinearReport solve_scaled(const Vector& b, Vector& x, Real tolerance) {
@@ -158,7 +158,7 @@ class IterativeSolver : public LinearSolver {
       report.converged = failure_.empty();
       return report;
     }
-    iterate(b, x, tolerance, reuse_.most_iterations(tolerance), report);
+    iterate(b, x, tolerance, reuse_.max_iterations(tolerance), report);
     if (reuse_.gives_up(report.iterations, report.reason.empty() && report.residual <= 2 * tolerance)) {
       if (!report.reason.empty() || !std::isfinite(report.residual)) {  // unusable as a start
         x.putScalar(0);
@@ -231,9 +231,9 @@ class IterativeSolver : public LinearSolver {
   }
 
   /// Continues from x. Sets a reason only if the library throws.
-  void iterate(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
+  void iterate(const Vector& b, Vector& x, Real tolerance, int maximum, LinearReport& report) {
     try {
-      base::collectively(*comm_, [&] { refine(b, x, tolerance, most, report); });
+      base::collectively(*comm_, [&] { refine(b, x, tolerance, maximum, report); });
     } catch (const Error& error) {
       report.reason = fmt::format("iterative solve: {}", gist(error.what()));
     }
@@ -241,12 +241,12 @@ class IterativeSolver : public LinearSolver {
 
   /// Solves, then refines the result. The updated residual of the Krylov method deviates from the true one if the
   /// matrix is nearly singular. Then the method solves for the remaining residual, as long as this helps.
-  void refine(const Vector& b, Vector& x, Real tolerance, int most, LinearReport& report) {
+  void refine(const Vector& b, Vector& x, Real tolerance, int maximum, LinearReport& report) {
     const bool begins = report.iterations == 0;
     report.residual = begins ? 1 : residual_of(b, x);
     bool ended = report.residual > tolerance;
     if (begins && ended) {
-      ended = krylov(b, x, tolerance, most, report.iterations);
+      ended = krylov(b, x, tolerance, maximum, report.iterations);
       const Real before = std::exchange(report.residual, residual_of(b, x));
       ended = ended && is_worthwhile(before, report.residual, tolerance);
     }
@@ -255,7 +255,7 @@ class IterativeSolver : public LinearSolver {
     relative_residual(*matrix_, b, x, r);
     while (ended && report.residual > tolerance) {
       dx.putScalar(0);
-      ended = krylov(r, dx, tolerance / report.residual, most, report.iterations);
+      ended = krylov(r, dx, tolerance / report.residual, maximum, report.iterations);
       x.update(1, dx, 1);
       const Real before = std::exchange(report.residual, relative_residual(*matrix_, b, x, r));
       ended = ended && is_worthwhile(before, report.residual, tolerance);
@@ -279,11 +279,11 @@ class IterativeSolver : public LinearSolver {
     return preconditioner_->has_cycles() ? "Block GMRES" : "Flexible GMRES";
   }
 
-  /// Solves from x = 0. Adds to the iterations, at most `most` unless this is 0. Returns false after too many
+  /// Solves from x = 0. Adds to the iterations, at most `maximum` unless this is 0. Returns false after too many
   /// iterations, or if the preconditioner of an earlier matrix is not positive for this one. If this happens with a new
   /// preconditioner, the matrix is indefinite: in hexahedra, quadrature may give single functions at crack tips a small
   /// negative energy. GMRES then replaces conjugate gradients permanently.
-  bool krylov(const Vector& b, Vector& x, Real tolerance, int most, int& iterations) {
+  bool krylov(const Vector& b, Vector& x, Real tolerance, int maximum, int& iterations) {
     const auto& parameters = parameters_.sublist("Belos");
     RCP<const Operator> M = inverse_;
     if (!scale_.is_null()) M = rcp(new ScaledOperator(inverse_, unscale_));
@@ -293,7 +293,7 @@ class IterativeSolver : public LinearSolver {
         if (n++ % products_between_stops == 0 && base::any_rank(*comm_, should_stop_)) throw Stopped();
       };
     const auto solve_once = [&] {
-      return solve::krylov(matrix_, M, parameters, usual_method(), b, x, tolerance, most, watch);
+      return solve::krylov(matrix_, M, parameters, usual_method(), b, x, tolerance, maximum, watch);
     };
     auto end = solve_once();
     if (end.indefinite) x.putScalar(0);
@@ -317,9 +317,9 @@ class IterativeSolver : public LinearSolver {
   RCP<const Operator> matrix_;
   RCP<const Operator> inverse_;        // approximate inverse of the matrix
   RCP<const Vector> scale_, unscale_;  // of rows and columns; null: none
-  static constexpr Real most_noise = 0.1;
-  static constexpr Real much = 0.1;        // relative change of a diagonal above which a row has changed
-  static constexpr int most_changed = 30;  // changed rows for which multigrid is kept; each costs an iteration
+  static constexpr Real max_noise = 0.1;
+  static constexpr Real much = 0.1;       // relative change of a diagonal above which a row has changed
+  static constexpr int max_changed = 30;  // changed rows for which multigrid is kept; each costs an iteration
   LinearSystem system_;
   std::vector<RCP<const Vector>> diagonals_;  // [block] when multigrid was made; null: the block has no matrix
   bool symmetric_ = false, definite_ = true, has_worked_ = false;

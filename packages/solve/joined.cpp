@@ -33,15 +33,15 @@ class JoinedOperator : public fields::Operator {
     const int n = joined_->n_blocks();
     for (int r = 0; r < n; ++r) {
       const auto to = y.offsetViewNonConst(joined_->map(r), joined_->first(r));
-      Real kept = beta;
+      Real retained = beta;
       for (int s = 0; s < n; ++s) {
         if (blocks_[r * n + s].is_null()) continue;
         const auto from = x.offsetView(joined_->map(s), joined_->first(s));
         const Real factor = alpha * joined_->scale(r) * joined_->scale(s);
-        blocks_[r * n + s]->apply(*from, *to, Teuchos::NO_TRANS, factor, kept);
-        kept = 1;
+        blocks_[r * n + s]->apply(*from, *to, Teuchos::NO_TRANS, factor, retained);
+        retained = 1;
       }
-      if (kept != 1) to->scale(kept);
+      if (retained != 1) to->scale(retained);
     }
   }
 
@@ -123,11 +123,11 @@ JoinedMatrix::JoinedMatrix(std::shared_ptr<const Joined> joined, Blocks blocks)
     return;
   }
   const int here = common_size(blocks_);  // ranks without rows may differ
-  int least = here, most = here;
+  int minimum = here, maximum = here;
   const auto& comm = *joined_->map()->getComm();
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, 1, &here, &least);
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &most);
-  size_ = least == most ? here : 1;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, 1, &here, &minimum);
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 1, &here, &maximum);
+  size_ = minimum == maximum ? here : 1;
   RCP<const Map> columns;
   find_runs(number_columns(columns));
   matrix_ = rcp(new Matrix(joined_->map(), columns, joined_->map(), numbers_));

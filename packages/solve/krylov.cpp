@@ -50,7 +50,7 @@ class Watched : public Operator {
 }  // namespace
 
 KrylovEnd krylov(const RCP<const Operator>& A, const RCP<const Operator>& M, const ParameterList& parameters,
-                 const std::string& usual, const Vector& b, Vector& x, Real tolerance, int most,
+                 const std::string& usual, const Vector& b, Vector& x, Real tolerance, int maximum,
                  const std::function<void()>& before_product) {
   using Problem = Belos::LinearProblem<Real, MultiVector, Operator>;
   RCP<const Operator> watched = A;
@@ -64,7 +64,7 @@ KrylovEnd krylov(const RCP<const Operator>& A, const RCP<const Operator>& M, con
   list->remove("Solver Type");
   if (method.find("GMRES") == std::string::npos) list->remove("Num Blocks", false);
   list->get("Convergence Tolerance", tolerance);
-  if (most > 0) list->set("Maximum Iterations", std::min(most, list->get<int>("Maximum Iterations")));
+  if (maximum > 0) list->set("Maximum Iterations", std::min(maximum, list->get<int>("Maximum Iterations")));
   Belos::SolverFactory<Real, MultiVector, Operator> factory;
   const auto solver = factory.create(method, list);
   solver->setProblem(problem);

@@ -23,10 +23,10 @@ struct KrylovEnd {
 
 /// Solves A x = b, starting from x. M approximates A^-1 and preconditions from the right. The method is the "Solver
 /// Type" of the parameters, else `usual`. The relative residual is `tolerance` unless the parameters contain one.
-/// `most`: largest number of iterations; 0: that of the parameters. `before_product`, if given, is called before each
-/// product with A and may throw. Exceptions of Belos pass through. Collective.
+/// `maximum`: largest number of iterations; 0: that of the parameters. `before_product`, if given, is called before
+/// each product with A and may throw. Exceptions of Belos pass through. Collective.
 KrylovEnd krylov(const RCP<const fields::Operator>& A, const RCP<const fields::Operator>& M,
                  const Teuchos::ParameterList& parameters, const std::string& usual, const fields::Vector& b,
-                 fields::Vector& x, Real tolerance, int most = 0, const std::function<void()>& before_product = {});
+                 fields::Vector& x, Real tolerance, int maximum = 0, const std::function<void()>& before_product = {});
 
 }  // namespace sprekk::solve

@@ -27,12 +27,12 @@ void check_library_entries(base::Section& section, const Teuchos::ParameterList&
       section.fail_inside(
           fmt::format("MUMPS > \"{}\": cannot be set: Sprekk controls the transfer of matrix and solution", name));
   }
-  for (const auto& [name, least] : {std::pair("Maximum Iterations", 1), std::pair("Maximum Restarts", 0),
-                                    std::pair("Num Blocks", 1), std::pair("Block Size", 1)}) {
+  for (const auto& [name, minimum] : {std::pair("Maximum Iterations", 1), std::pair("Maximum Restarts", 0),
+                                      std::pair("Num Blocks", 1), std::pair("Block Size", 1)}) {
     const auto* entry = belos.getEntryPtr(name);
-    if (entry && !(entry->isType<int>() && Teuchos::getValue<int>(*entry) >= least))
+    if (entry && !(entry->isType<int>() && Teuchos::getValue<int>(*entry) >= minimum))
       section.fail_inside(
-          fmt::format("Belos > \"{}\": is {}, must be an integer, at least {}", name, base::describe(*entry), least));
+          fmt::format("Belos > \"{}\": is {}, must be an integer, at least {}", name, base::describe(*entry), minimum));
   }
 }
 

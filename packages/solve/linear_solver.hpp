@@ -92,10 +92,10 @@ struct ChosenSolver {
 /// selected. Collective.
 ChosenSolver make_linear_solver(const LinearSolverOptions& options, const std::vector<Block>& blocks);
 
-/// Return a direct or an iterative solver. Ranks 0 to most_ranks - 1 share the factors. One rank adds in the same order
+/// Return a direct or an iterative solver. Ranks 0 to max_ranks - 1 share the factors. One rank adds in the same order
 /// every time.
 std::unique_ptr<LinearSolver> make_direct_solver(const Teuchos::ParameterList& mumps,
-                                                 int most_ranks = std::numeric_limits<int>::max());
+                                                 int max_ranks = std::numeric_limits<int>::max());
 std::unique_ptr<LinearSolver> make_iterative_solver(const LinearSolverOptions& options,
                                                     const std::vector<Block>& blocks);
 

@@ -19,8 +19,8 @@ using Policy = Kokkos::RangePolicy<Execution>;
 /// Stores A_aa in J_aa if the problem permits it. Collective.
 void share(BlockProblem& problem, int a, CondensedBlock& condensed) {
   start_from_bulk(condensed);
-  condensed.kept = problem.share(a, condensed.matrix);
-  if (!condensed.kept) return;
+  condensed.saved = problem.share(a, condensed.matrix);
+  if (!condensed.saved) return;
   condensed.bulk = Teuchos::null;
   condensed.bulk_column = {};
 }
@@ -52,16 +52,16 @@ LocalElimination::LocalElimination(BlockProblem& problem)
     keep_condensed(block(r, r), plan_.groups, r, n_remaining());  // J has columns that A does not have
   }
   for (auto& condensed : plan_.condensed)
-    if (!condensed.matrix.is_null() && !condensed.kept) condensed.rows = all_rows(*condensed.matrix);
+    if (!condensed.matrix.is_null() && !condensed.saved) condensed.rows = all_rows(*condensed.matrix);
 }
 
 LocalElimination::Status LocalElimination::update(BlockProblem& problem) {
-  const bool held_anew = take_constraints(problem);
+  const bool newly_constrained = take_constraints(problem);
   for (int r = 0; r < n_remaining(); ++r) {
     const auto proximal = problem.globalisation().proximal(plan_.remaining[r]);
-    for (int s = 0; s < n_remaining() && (held_anew || fresh_); ++s)
+    for (int s = 0; s < n_remaining() && (newly_constrained || fresh_); ++s)
       if (!block(r, s).matrix.is_null()) block(r, s).held = find_held(block(r, s), *constrained_[r]);
-    if (held_anew || fresh_ || !proximal.is_null()) keep_held(block(r, r), *constrained_[r], proximal);
+    if (newly_constrained || fresh_ || !proximal.is_null()) keep_held(block(r, r), *constrained_[r], proximal);
     for (int s = 0; s < n_remaining(); ++s)
       if (!block(r, s).matrix.is_null()) start_from_bulk(block(r, s));
     if (!proximal.is_null()) add_diagonal(*proximal, block(r, r));
@@ -264,12 +264,12 @@ void LocalElimination::apply_inverse(const GroupPlan& group, BlockVector& z) con
 
 BlockVector LocalElimination::reduce(const BlockVector& b) const {
   auto lift = fields::create_like(b), s = fields::create_like(b);
-  Real most = 0;
+  Real maximum = 0;
   for (int r = 0; r < n_remaining(); ++r) {
     lift[plan_.remaining[r]]->elementWiseMultiply(1, *constrained_[r], *b[plan_.remaining[r]], 0);
-    most += lift[plan_.remaining[r]]->normInf();
+    maximum += lift[plan_.remaining[r]]->normInf();
   }
-  const bool lifts = most != 0;  // false after Newton's first iteration, which satisfies the conditions
+  const bool lifts = maximum != 0;  // false after Newton's first iteration, which satisfies the conditions
   if (lifts) matrix_->apply(lift, s);
   for (std::size_t i = 0; i < b.size(); ++i) s[i]->update(1, *b[i], -1);
   for (const auto& group : plan_.groups) {

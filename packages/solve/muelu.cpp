@@ -127,13 +127,13 @@ void check(const std::string& place, const ParameterList& given, const Parameter
 class RaisedDiagonal {
  public:
   explicit RaisedDiagonal(CrsMatrix& matrix) : matrix_(matrix), values_(base::n_local_rows(matrix)) {
-    each([](Real& value, Real& kept) {
-      kept = value;
+    each([](Real& value, Real& saved) {
+      saved = value;
       value *= 1 + 1e-8;
     });
   }
   ~RaisedDiagonal() {
-    each([](Real& value, const Real& kept) { value = kept; });
+    each([](Real& value, const Real& saved) { value = saved; });
   }
   RaisedDiagonal(const RaisedDiagonal&) = delete;
   RaisedDiagonal& operator=(const RaisedDiagonal&) = delete;
@@ -196,16 +196,16 @@ class MueLuMultigrid : public Preconditioner {
     const auto& bulk = system.diagonal.front().bulk;
     const bool by_bulk = bulk && system.diagonal.size() == 1;
     // with advection, strong couplings depend on the values: those of an earlier flow are outdated
-    const bool anew =
+    const bool rebuild =
         hierarchy_.is_null() || (symmetric_ && !system.symmetric) || system.diagonal.front().block.advected;
-    if (anew) {
+    if (rebuild) {
       symmetric_ = system.symmetric;
       if (by_bulk)
         bulk([&](const RCP<const Matrix>& of_bulk) { create(system, of_bulk->crs()); });
       else
         create(system, matrix);
     }
-    if (!anew || by_bulk) {
+    if (!rebuild || by_bulk) {
       const RaisedDiagonal raised(*matrix);
       MueLu::ReuseTpetraPreconditioner(matrix, *hierarchy_);
     }

@@ -20,7 +20,7 @@ namespace {
 
 using NOX::StatusTest::StatusType;
 
-constexpr int most_lagged = 60;  // steps with lagged coefficients
+constexpr int max_lagged = 60;  // steps with lagged coefficients
 
 /// Convergence test. Converged: all measures are at most the tolerance. Failed: a measure or the residual is not
 /// finite, no progress, too many iterations, or stopped. Saves the history and the reason.
@@ -47,7 +47,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
       status_ = NOX::StatusTest::Converged;
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
-    } else if ((picard_.lags() && picard_.n_steps() >= most_lagged) ||
+    } else if ((picard_.lags() && picard_.n_steps() >= max_lagged) ||
                report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
@@ -263,12 +263,12 @@ NewtonReport Newton::solve(Evaluation& x) {
   if (report.iterations > 0 && !report.linear_solves.back().converged)
     report.reason = report.linear_solves.back().reason;
   if (!report.converged && report.reason.empty()) report.reason = "NOX gave up";
-  report.loose = found.loose;
-  report.unsettled = step->iterates().changed_lately();
+  report.floating = found.floating;
+  report.oscillating = step->iterates().changed_lately();
   return report;
 }
 
-LinearReport Newton::answer(const Evaluation& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
+LinearReport Newton::solve_linearized(const Evaluation& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
   if (linear_->n_setups() == 0 || factors_ == Factors::damped) {
     problem_.globalisation().damp(0, {});
     problem_.jacobian(x);

@@ -38,8 +38,8 @@ struct NewtonReport {
   int iterations = 0;                         ///< linear solves: Newton steps, including repetitions with damping
   std::vector<LinearReport> linear_solves;    ///< one per iteration
   std::string reason;                         ///< reason of a failure
-  std::string loose;                          ///< floating bodies in the last iterate that had some, as text
-  std::vector<char> unsettled;                ///< [as Globalisation::states()] state changed in the last five iterates
+  std::string floating;                       ///< floating bodies in the last iterate that had some, as text
+  std::vector<char> oscillating;              ///< [as Globalisation::states()] state changed in the last five iterates
   std::vector<Measure> measures;              ///< at the end
   std::vector<std::vector<Measure>> history;  ///< [iteration, 0: start]
 };
@@ -60,7 +60,7 @@ class Newton {
   /// Computes dx = A^-1 b, [block], the linear response of x to small forces b. Rows of constrained unknowns are dx_i =
   /// b_i. A is the last Jacobian of a linear solve. If that was damped, A is the Jacobian at convergence, or at x after
   /// a failure. If there was none, A is the Jacobian at x. Collective.
-  LinearReport answer(const Evaluation& x, const BlockVector& b, BlockVector& dx, Real tolerance);
+  LinearReport solve_linearized(const Evaluation& x, const BlockVector& b, BlockVector& dx, Real tolerance);
 
   const CondensedSolve& linear() const { return *linear_; }
 
@@ -70,7 +70,7 @@ class Newton {
   bool solving_ = false;  // linear solves may be stopped
   std::unique_ptr<CondensedSolve> linear_;
   std::unique_ptr<ForcedSolve> forced_;
-  /// Factors for answer(): of the last Jacobian, older than the matrix, or damped.
+  /// Factors for solve_linearized(): of the last Jacobian, older than the matrix, or damped.
   enum class Factors { good, old, damped } factors_ = Factors::good;
 };
 

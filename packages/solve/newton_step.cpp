@@ -9,9 +9,9 @@
 namespace sprekk::solve {
 namespace {
 
-constexpr Real smallest_length = 1.0 / 64, least_damping = 0.1, most_damping = 10;
+constexpr Real smallest_length = 1.0 / 64, min_damping = 0.1, max_damping = 10;
 constexpr Real solved_part = 0.1;  // of the merit of the lagged f
-constexpr int most_frozen = 4, most_unbalanced = 3, most_restarts = 3;
+constexpr int max_frozen = 4, max_unbalanced = 3, max_restarts = 3;
 
 }  // namespace
 
@@ -60,8 +60,8 @@ bool NewtonStep::linearize(const NoxGroup& group, NOX::Abstract::Vector& dx) {
 bool NewtonStep::balance(Attempt& attempt) {
   auto blocks = blocks_of(*attempt.along.dx);
   const auto unresisted = attempt.solved ? globalisation_.balance(attempt.from.x(), blocks, attempt.along.end) : "";
-  if (const auto loose = globalisation_.loose(); !loose.empty()) report_.loose = loose;
-  if (!unresisted.empty() && ++n_unbalanced_ > most_unbalanced) {
+  if (const auto floating = globalisation_.floating(); !floating.empty()) report_.floating = floating;
+  if (!unresisted.empty() && ++n_unbalanced_ > max_unbalanced) {
     report_.failure = "no resistance to the loads found: " + unresisted + ", and meets none";
     return false;
   }
@@ -81,8 +81,8 @@ NewtonStep::Found NewtonStep::attempt(Attempt& attempt) {
 NewtonStep::Found NewtonStep::damp(Attempt& attempt) {
   if (attempt.solved) attempt.first = {attempt.along.dx->clone(), attempt.along.end};
   Found found;
-  while (!found && damping_ < most_damping) {
-    globalisation_.damp(damping_ = std::max(10 * damping_, least_damping), iterates_.swinging());
+  while (!found && damping_ < max_damping) {
+    globalisation_.damp(damping_ = std::max(10 * damping_, min_damping), iterates_.swinging());
     attempt.solved = linearize(attempt.from, *attempt.along.dx);
     attempt.along.end = linear_.take_end();
     if (attempt.solved) found = try_direction(attempt);
@@ -111,7 +111,7 @@ bool NewtonStep::return_to_lag(const Attempt& attempt) {
 /// Takes the full step if it leads to other states. The merits of distant states may differ by many orders of
 /// magnitude.
 NewtonStep::Found NewtonStep::enter_other_states(Attempt& attempt) {
-  if (attempt.first.dx.is_null() || picard_.possible() || n_restarts_ == most_restarts) return {};
+  if (attempt.first.dx.is_null() || picard_.possible() || n_restarts_ == max_restarts) return {};
   const auto taken = full(attempt, attempt.first);
   if (!taken || globalisation_.state_hash(globalisation_.states(attempt.group.x())) == iterates_.pattern()) return {};
   ++n_restarts_;
@@ -140,7 +140,7 @@ bool NewtonStep::reject(const Attempt& attempt, Trial& taken) {
 
 /// Accepts a step. Before the first full step, the linear part is not balanced, so calibration starts with its result.
 void NewtonStep::accept(NoxGroup& group, const Trial& taken) {
-  if (taken.length == 1 && damping_ > 0) damping_ = damping_ > least_damping ? damping_ / 10 : 0;
+  if (taken.length == 1 && damping_ > 0) damping_ = damping_ > min_damping ? damping_ / 10 : 0;
   const bool changed = globalisation_.calibrate(group.x(), iterates_.empty());
   const Real merit = changed ? merit_of_changed_f(group) : taken.merit;
   auto states = globalisation_.states(group.x());
@@ -197,12 +197,12 @@ bool NewtonStep::begins_to_struggle(const Trial& taken) {
 bool NewtonStep::freeze(const Trial& taken) {
   const bool freezes = struggles_ && !iterates_.empty() && taken.merit > solved_part * iterates_.last_merit();
   n_frozen_ = freezes ? n_frozen_ + 1 : 0;
-  if (freezes) picard_.hold();
+  if (freezes) picard_.freeze();
   return freezes;
 }
 
 bool NewtonStep::is_stagnant() const {
-  if (n_frozen_ > most_frozen && iterates_.not_halved_in(most_frozen)) return true;
+  if (n_frozen_ > max_frozen && iterates_.not_halved_in(max_frozen)) return true;
   return picard_.possible() ? iterates_.stagnate_without_lag() : iterates_.stagnate(problem_.stores());
 }
 

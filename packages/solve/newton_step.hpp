@@ -35,8 +35,8 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
  public:
   struct Report {
     std::vector<LinearReport> linear_solves;
-    std::string failure;  ///< reason for a missing step
-    std::string loose;    ///< floating bodies in the last iterate that had some, as text
+    std::string failure;   ///< reason for a missing step
+    std::string floating;  ///< floating bodies in the last iterate that had some, as text
     /// Stagnation of the iteration, see Iterates. With frozen coefficients, also: four steps did not halve the merit.
     bool stagnant = false;
     bool damped = false;  ///< the last Jacobian of a linear solve was damped or lagged, on this rank

@@ -8,7 +8,7 @@ using Lag = BlockProblem::Lag;
 constexpr Real far = 1;        // limit for |ln| of the ratio of coefficients
 constexpr Real closer = 0.3;   // factor of the distance after a failure of Newton's method
 constexpr Real little = 0.05;  // for near_, reached after three failures of Newton's method
-constexpr Real least_step = 0.25, most_growth = 1e3;
+constexpr Real min_step = 0.25, max_growth = 1e3;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ bool Picard::follow(const Evaluation& x) {
 }
 
 bool Picard::resume(const Evaluation& from, Real step, Real merit, Real merit_before) {
-  if (step >= least_step && merit <= most_growth * merit_before) return false;
+  if (step >= min_step && merit <= max_growth * merit_before) return false;
   problem_.lag(Lag::follow, from);
   lags_ = fresh_ = true;
   near_ *= closer;

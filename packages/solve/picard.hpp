@@ -36,7 +36,7 @@ class Picard {
   /// Updates the coefficients after a full step of the lagged f to x. Returns whether the step is rejected.
   bool follow(const Evaluation& x);
   /// Replaces follow() while the lagged problem is not solved: the coefficients remain frozen.
-  void hold() { ++n_; }
+  void freeze() { ++n_; }
   /// Checks a step of f itself from `from` with the step length `step`. Returns whether it is rejected; f then lags
   /// again.
   bool resume(const Evaluation& from, Real step, Real merit, Real merit_before);

@@ -42,7 +42,7 @@ class NodeMultigrid : public Preconditioner {
     list.sublist("multigrid")
         .set("degree", options_.degree, "of Chebyshev's polynomial")
         .set("coarsest level", options_.coarse_size, "unknowns at most")
-        .set("least of a rank", options_.least_of_a_rank, "numbers of a matrix, on average");
+        .set("minimum per rank", options_.minimum_per_rank, "numbers of a matrix, on average");
     for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
   }
 
@@ -334,14 +334,14 @@ std::string gist(const std::string& text) {
 }
 
 void check_names(const std::string& place, const ParameterList& given, const std::vector<ParameterList>& allowed) {
-  constexpr std::size_t most_listed = 40;
+  constexpr std::size_t max_listed = 40;
   std::set<std::string> names;
   for (const auto& list : allowed)
     for (const auto& item : list) names.insert(item.first);
   const std::vector<std::string> known(names.begin(), names.end());
   for (const auto& item : given) {
     if (names.count(item.first) > 0) continue;
-    const auto all = known.size() > most_listed ? "" : "; there are " + base::quoted_list(known);
+    const auto all = known.size() > max_listed ? "" : "; there are " + base::quoted_list(known);
     auto meant = base::did_you_mean(item.first, known);
     if (all.empty() && meant.empty()) meant = "; see the manual of the library for its parameters";
     throw RefusedList(fmt::format("{} > \"{}\": no such parameter{}{}", place, item.first, all, meant));

@@ -30,7 +30,7 @@ class Preconditioner {
   /// Returns whether it is symmetric for symmetric systems.
   virtual bool is_symmetric() const { return true; }
   /// Returns whether it remains useful if the system changes little.
-  virtual bool can_be_kept() const { return true; }
+  virtual bool can_be_reused() const { return true; }
   /// Returns whether it is a cycle of Sprekk's multigrid, which can be tried at set-up.
   virtual bool has_cycles() const { return false; }
   /// Returns the largest number of unknowns for which a direct solver replaces it; 0: none.

@@ -16,30 +16,30 @@ class Reuse {
     none,       ///< no preconditioner
     unchecked,  ///< of the present system, cycles not tried
     checked,    ///< of the present system, cycles tried
-    kept,       ///< of an earlier system
+    reused,     ///< of an earlier system
     worn        ///< of an earlier system; the last solve was slow, so the next system gets a new one
   };
-  static constexpr int most_unchecked = 40;  ///< iterations until a new one is made with a trial of its cycles
-  static constexpr int most_more = 4;        ///< additional iterations that one of an earlier system may take
+  static constexpr int max_unchecked = 40;  ///< iterations until a new one is made with a trial of its cycles
+  static constexpr int max_more = 4;        ///< additional iterations that one of an earlier system may take
 
   State state() const { return state_; }
-  bool is_of_earlier_system() const { return state_ == State::kept || state_ == State::worn; }
+  bool is_of_earlier_system() const { return state_ == State::reused || state_ == State::worn; }
   /// Returns whether the next system may use the present preconditioner.
   bool may_keep() const { return state_ != State::none && state_ != State::worn; }
   /// Returns whether cycles must be tried at each set-up, because a solve without this check was slow.
   bool is_careful() const { return careful_; }
 
-  void keep() { state_ = State::kept; }
+  void keep() { state_ = State::reused; }
   void make(bool checks) { state_ = checks ? State::checked : State::unchecked; }
   void lose() { state_ = State::none; }
 
   /// Returns the number of iterations after which a solve is repeated with a new preconditioner; 0: no limit.
-  int most_iterations(Real tolerance) const {
-    return is_of_earlier_system() ? expected(tolerance) + most_more : state_ == State::unchecked ? most_unchecked : 0;
+  int max_iterations(Real tolerance) const {
+    return is_of_earlier_system() ? expected(tolerance) + max_more : state_ == State::unchecked ? max_unchecked : 0;
   }
   /// Returns whether a new preconditioner with checks is needed after a solve. `reached`: the solve met its tolerance.
   bool gives_up(int iterations, bool reached) {
-    const bool too_long = state_ == State::unchecked && iterations >= most_unchecked;
+    const bool too_long = state_ == State::unchecked && iterations >= max_unchecked;
     if (reached || !(is_of_earlier_system() || too_long)) return false;
     careful_ = careful_ || too_long;
     return true;
@@ -48,7 +48,7 @@ class Reuse {
   /// required reduction.
   void learn(int iterations, Real factor, Real wanted) {
     if (is_of_earlier_system())
-      state_ = iterations > expected(wanted) + most_more / 2 ? State::worn : State::kept;
+      state_ = iterations > expected(wanted) + max_more / 2 ? State::worn : State::reused;
     else if (const Real gained = std::max(factor, wanted); gained < 0.1)
       pace_ = -iterations / std::log10(gained);
   }

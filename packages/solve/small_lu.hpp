@@ -11,9 +11,9 @@ namespace sprekk::solve {
 inline constexpr int max_small_size = 16;
 
 KOKKOS_INLINE_FUNCTION void exchange(Real& x, Real& y) {
-  const Real kept = x;
+  const Real saved = x;
   x = y;
-  y = kept;
+  y = saved;
 }
 
 /// Replaces a [m, m] (row by row) by its LU factors. Rows are exchanged as for an equilibrated matrix: columns scaled

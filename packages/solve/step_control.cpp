@@ -7,10 +7,10 @@ namespace sprekk::solve {
 
 namespace {
 
-constexpr Real aim = 0.8;                              // relative to the tolerance
-constexpr Real most_shrink = 0.1, least_shrink = 0.5;  // relative to the rejected length
-constexpr Real shorter = 0.9;                          // largest length after a rejection, relative to the rejected one
-constexpr Real same = 1e-12;                           // relative round-off of times
+constexpr Real aim = 0.8;                           // relative to the tolerance
+constexpr Real max_shrink = 0.1, min_shrink = 0.5;  // relative to the rejected length
+constexpr Real shorter = 0.9;                       // largest length after a rejection, relative to the rejected one
+constexpr Real same = 1e-12;                        // relative round-off of times
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Real StepControl::end_of_step(Real t) const {
 }
 
 StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& errors, int newton_iterations) {
-  Real worst = 0, factor = options_.tolerance && errors.empty() ? 1 : options_.most_growth;
+  Real worst = 0, factor = options_.tolerance && errors.empty() ? 1 : options_.max_growth;
   for (const auto& error : errors) {
     if (options_.tolerance && error.order == fields::StepError::unknown) factor = std::min<Real>(factor, 1);
     if (!options_.tolerance || !(error.value > 0)) continue;
@@ -38,12 +38,12 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
     factor = std::min(factor, std::pow(aim * *options_.tolerance / error.value, 1 / error.order));
   }
   const bool helped = rejected_dt_ == 0 || dt > 0.8 * rejected_dt_ || worst < 0.8 * worst_;
-  const bool can_be_shorter = options_.smallest <= shorter * dt, too_many = n_rejected_ == most_rejections;
+  const bool can_be_shorter = options_.smallest <= shorter * dt, too_many = n_rejected_ == max_rejections;
   if (worst > 1 && helped && can_be_shorter && !too_many) {
     worst_ = worst;
     rejected_dt_ = dt;
     ++n_rejected_;
-    memory_.length = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
+    memory_.length = bounded(dt * std::clamp(factor, max_shrink, min_shrink));
     return Verdict::rejected;
   }
   const bool again = rejected_dt_ > 0;
@@ -55,9 +55,9 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
     return helped ? Verdict::limited : Verdict::jumped;
   }
   if (again) factor = std::min<Real>(factor, 1);
-  const Real next = dt * std::max(factor, most_shrink);
+  const Real next = dt * std::max(factor, max_shrink);
   memory_.length = bounded(
-      dt < memory_.length && factor >= 1 ? std::min(std::max(next, memory_.length), options_.most_growth * dt) : next);
+      dt < memory_.length && factor >= 1 ? std::min(std::max(next, memory_.length), options_.max_growth * dt) : next);
   return Verdict::accepted;
 }
 
@@ -82,7 +82,7 @@ void StepControl::resume(const Memory& memory) {
 
 void StepControl::shorten(Real dt, Real bend) {
   const Real factor = std::sqrt(aim * options_.tolerance.value_or(bend) / bend);
-  memory_.length = bounded(dt * std::clamp(factor, most_shrink, least_shrink));
+  memory_.length = bounded(dt * std::clamp(factor, max_shrink, min_shrink));
 }
 
 void StepControl::be_careful(Real t) {

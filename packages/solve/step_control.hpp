@@ -12,13 +12,13 @@ struct StepControlOptions {
   std::optional<Real> tolerance;  ///< for relative errors
   std::optional<int> iterations;  ///< required number of Newton iterations per step
   Real first = 1, smallest = 0, largest = 1;
-  Real most_growth = 3;
+  Real max_growth = 3;
 };
 
 /// Selection of step lengths. An error e of order p suggests the length dt (aim tolerance/e)^(1/p); the smallest
 /// counts. n Newton iterations suggest dt (wanted/n)^(1/2). The length is not reduced further if a tenth of it has not
 /// saved iterations. If an error is unknown, a step is at most as long as the previous one.
-/// - Steps with an error above the tolerance are rejected. Exceptions: the minimum length, `most_rejections` in
+/// - Steps with an error above the tolerance are rejected. Exceptions: the minimum length, `max_rejections` in
 ///   succession, or a rejected longer step that was only slightly less accurate (discontinuous loads do not depend on
 ///   the length).
 /// - After a rejection, the next attempt has at most half the length, or the minimum length.
@@ -28,7 +28,7 @@ class StepControl {
   StepControl(const StepControlOptions& options, std::vector<Real> stops)
       : options_(options), stops_(std::move(stops)), memory_{options.first} {}
 
-  static constexpr int most_rejections = 30;
+  static constexpr int max_rejections = 30;
 
   /// Returns the end of the next step from t.
   Real end_of_step(Real t) const;
@@ -36,7 +36,7 @@ class StepControl {
     accepted,
     rejected,  ///< try a shorter step
     jumped,    ///< accepted, since a shorter step does not help
-    limited    ///< accepted: minimum length, or `most_rejections` in succession
+    limited    ///< accepted: minimum length, or `max_rejections` in succession
   };
   /// Judges a step of length dt and sets the length of the next step.
   Verdict judge(Real dt, const fields::StepErrors& errors, int newton_iterations);

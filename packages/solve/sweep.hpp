@@ -13,7 +13,7 @@ class Sweep : public Preconditioner {
         std::vector<std::unique_ptr<Preconditioner>> parts);
 
   bool is_symmetric() const override { return false; }
-  bool can_be_kept() const override { return false; }
+  bool can_be_reused() const override { return false; }
   int coarse_size() const override { return parts_.front()->coarse_size(); }
   std::vector<SolverCost> costs() const override;
   void describe(Teuchos::ParameterList& blocks) const override;

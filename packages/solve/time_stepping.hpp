@@ -6,8 +6,8 @@
 namespace sprekk::solve {
 
 struct TimeSteppingOptions {
-  int max_halvings = 6;  ///< smallest substep: step / 2^max_halvings
-  bool tethers = true;   ///< proximal continuation before the first halving, see TimeStepper::relax()
+  int max_halvings = 6;               ///< smallest substep: step / 2^max_halvings
+  bool proximal_continuation = true;  ///< proximal continuation before the first halving, see TimeStepper::relax()
 
   void describe(base::Section& section);
 };
@@ -22,8 +22,8 @@ struct StepReport {
   int substeps = 0;                         ///< committed substeps
   int cuts = 0;
   std::string reason;             ///< of the last failure, if any
-  std::vector<char> unsettled;    ///< [as Globalisation::states()] oscillating states in the last failure
-  std::string loose;              ///< floating bodies in the state at `time`, as text
+  std::vector<char> oscillating;  ///< [as Globalisation::states()] oscillating states in the last failure
+  std::string floating;           ///< floating bodies in the state at `time`, as text
   std::vector<Measure> measures;  ///< of the last Newton solve
 };
 
@@ -41,7 +41,7 @@ class TimeStepper {
 
  private:
   NewtonReport solve(Evaluation& x, StepReport& report);
-  NewtonReport settle(Evaluation& x, NewtonReport newton, int& settlings, StepReport& report);
+  NewtonReport place_at_minimum_norm(Evaluation& x, NewtonReport newton, int& placements, StepReport& report);
   NewtonReport relax(Evaluation& x, StepReport& report);
 
   BlockProblem& problem_;

@@ -107,8 +107,8 @@ struct InCells {
     passed = View<Real**>("passed", context.mesh()->n_cells(), n_passed());
   }
   /// Copies the history to local cells. Collective.
-  void start_step(const View<Real**>& kept) {
-    const auto own = base::to_host(kept);
+  void start_step(const View<Real**>& saved) {
+    const auto own = base::to_host(saved);
     std::vector<Real> owned;
     for (std::size_t e = 0; e < own.extent(0); ++e)
       for (int k = 0; k < n_passed(); ++k) owned.push_back(own(e, k));
@@ -120,9 +120,9 @@ struct InCells {
   }
   /// Updates the history of volumes. `first`: start of a run, where the volume of the last step is zero.
   template <class Assembler, class Op>
-  void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& kept,
+  void keep(const Assembler& assembler, const Op& op, const assembly::State& state, const View<Real**>& saved,
             bool first) const {
-    const auto n_owned = static_cast<int>(kept.extent(0));
+    const auto n_owned = static_cast<int>(saved.extent(0));
     const auto flow = volumes;
     assembler.for_each(
         op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::Columns::size]) {
@@ -131,8 +131,8 @@ struct InCells {
           for (int k = 0; k <= Flow::n; ++k) p[k] = x[k];
           flow.flow(e, p, V);
           for (int i = 0; i < Flow::n; ++i) {
-            kept(e, Flow::n + i) = first ? 0 : V[i] - kept(e, i);
-            kept(e, i) = V[i];
+            saved(e, Flow::n + i) = first ? 0 : V[i] - saved(e, i);
+            saved(e, i) = V[i];
           }
         });
   }
@@ -206,7 +206,7 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
     assembly::Declaration d;
     for (const auto& row : rows()) d.couplings.push_back({Where::loop, row, columns()});
     d.carries = rows();
-    if (corrects()) d.history.push_back({"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_kept(n)});
+    if (corrects()) d.history.push_back({"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_saved(n)});
     if constexpr (Where::has_passed)
       if (where_->n_passed() > 0) d.history.push_back({"passed", Where::entity, where_->n_passed()});
     return d;
@@ -274,9 +274,9 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
         flow.push_back(q(e, i));
       }
     }
-    const auto kept = base::to_host(state.history[0]);
-    correction_->keep(u, of_ends, flow, stored, state.rate > 0 ? 1 / state.rate : 0, kept);
-    Kokkos::deep_copy(state.history[0], kept);
+    const auto saved = base::to_host(state.history[0]);
+    correction_->keep(u, of_ends, flow, stored, state.rate > 0 ? 1 / state.rate : 0, saved);
+    Kokkos::deep_copy(state.history[0], saved);
   }
 
  private:

@@ -110,35 +110,35 @@ Real Antidiffusion::share(std::size_t k) const {
 }
 
 void Antidiffusion::keep(const std::vector<Real>& u, const std::vector<Real>& of_ends, const std::vector<Real>& flow,
-                         const std::vector<Real>& stored, Real dt, const Kept& kept) const {
+                         const std::vector<Real>& stored, Real dt, const Stored& saved) const {
   const int n = graph_.n_ends;
-  for (LocalIndex e = 0; e < static_cast<LocalIndex>(kept.extent(0)); ++e) {
-    const bool began = dt > 0 && kept(e, n + 3) > 0;  // otherwise u_old is unknown
-    const Real late = (u[e] - kept(e, n)) / 2;
+  for (LocalIndex e = 0; e < static_cast<LocalIndex>(saved.extent(0)); ++e) {
+    const bool began = dt > 0 && saved(e, n + 3) > 0;  // otherwise u_old is unknown
+    const Real late = (u[e] - saved(e, n)) / 2;
     const Vector G = began ? gradient(e, u, of_ends) : Vector{};
-    Real largest = u[e], least = u[e];
+    Real largest = u[e], minimum = u[e];
     for (int i = 0; i < n; ++i) {
       const auto k = e * n + i;
       const LocalIndex other = graph_.neighbour[k];
       largest = std::max({largest, of_ends[k], other < 0 ? u[e] : u[other]});
-      least = std::min({least, of_ends[k], other < 0 ? u[e] : u[other]});
+      minimum = std::min({minimum, of_ends[k], other < 0 ? u[e] : u[other]});
       const bool leaves = began && other >= 0 && flow[k] > 0;
       const Real f = leaves ? dt * flow[k] * (mesh::dot(G, graph_.away[k]) - share(k) * (of_ends[k] - u[e]) - late) : 0;
-      kept(e, i) = leaves && f * (u[other] - u[e]) > 0 ? f : 0;
+      saved(e, i) = leaves && f * (u[other] - u[e]) > 0 ? f : 0;
     }
-    kept(e, n) = u[e];
-    kept(e, n + 1) = largest;
-    kept(e, n + 2) = least;
-    kept(e, n + 3) = stored[e];
+    saved(e, n) = u[e];
+    saved(e, n + 1) = largest;
+    saved(e, n + 2) = minimum;
+    saved(e, n + 3) = stored[e];
   }
 }
 
-std::vector<Real> Antidiffusion::gains(const Kept& kept) const {
+std::vector<Real> Antidiffusion::gains(const Stored& saved) const {
   const int n = graph_.n_ends;
-  const auto n_owned = static_cast<LocalIndex>(kept.extent(0));
+  const auto n_owned = static_cast<LocalIndex>(saved.extent(0));
   std::vector<Real> own, shares, gained(n_owned, 0);
   for (LocalIndex e = 0; e < n_owned; ++e)
-    for (int i = 0; i < n; ++i) own.push_back(kept(e, i));
+    for (int i = 0; i < n; ++i) own.push_back(saved(e, i));
   const auto f = with_ghosts(of_ends_, own);
   const auto inflow = [&](LocalIndex e, int i) {  // through end i, minus the outflow there
     const auto k = e * n + i;
@@ -151,7 +151,8 @@ std::vector<Real> Antidiffusion::gains(const Kept& kept) const {
       up += std::max(Real(0), inflow(e, i));
       down -= std::min(Real(0), inflow(e, i));
     }
-    const Real C = kept(e, n + 3), room = C * (kept(e, n + 1) - kept(e, n)), depth = C * (kept(e, n) - kept(e, n + 2));
+    const Real C = saved(e, n + 3), room = C * (saved(e, n + 1) - saved(e, n)),
+               depth = C * (saved(e, n) - saved(e, n + 2));
     shares.push_back(up > room ? room / up : 1);
     shares.push_back(down > depth ? depth / down : 1);
   }

@@ -34,19 +34,19 @@ EndGraph end_graph_of_fractures(const mesh::Mesh& mesh);
 /// start of the next step. They are conservative and create no new extrema.
 class Antidiffusion {
  public:
-  using Kept = View<Real**>::HostMirror;
+  using Stored = View<Real**>::HostMirror;
 
   /// Sets up the communication between neighbours. Collective.
   Antidiffusion(const mesh::Mesh& mesh, fields::Entity entity, EndGraph graph);
 
   /// Number of history columns of owned entities: f [end], u, largest u, least u, C.
-  static int n_kept(int n_ends) { return n_ends + 4; }
+  static int n_saved(int n_ends) { return n_ends + 4; }
   /// Computes the history at the end of a step. `u`, `of_ends` and `flow` (c q): local entities and their ends.
   /// `stored`: C of owned entities. dt = 0: no step.
   void keep(const std::vector<Real>& u, const std::vector<Real>& of_ends, const std::vector<Real>& flow,
-            const std::vector<Real>& stored, Real dt, const Kept& kept) const;
+            const std::vector<Real>& stored, Real dt, const Stored& saved) const;
   /// Gains of owned entities. Collective.
-  std::vector<Real> gains(const Kept& kept) const;
+  std::vector<Real> gains(const Stored& saved) const;
 
  private:
   std::array<Real, 3> gradient(LocalIndex e, const std::vector<Real>& u, const std::vector<Real>& of_ends) const;

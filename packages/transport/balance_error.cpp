@@ -74,8 +74,8 @@ class BalanceError final : public estimate::MeshError, estimate::GoalErrors {
       index_of_wells_[c.well] += c.index;
       if (c.face < 0 || mesh.dim() == 3) continue;
       const Real distance = distance_along(c);
-      Real& most = error.flow.fed[c.face];  // largest distance among the wells of a face
-      if (std::abs(distance) > std::abs(most)) most = distance;
+      Real& maximum = error.flow.fed[c.face];  // largest distance among the wells of a face
+      if (std::abs(distance) > std::abs(maximum)) maximum = distance;
     }
     index_of_wells_ = base::sum_over_ranks(*mesh.comm, index_of_wells_);
     for (const auto& one : error.flow.held) conditions_[one.name] = one.boundary;
@@ -120,7 +120,7 @@ class BalanceError final : public estimate::MeshError, estimate::GoalErrors {
   }
   estimate::CellErrors of_adjoint(const fields::BlockVector& x, const fields::BlockVector& z) override {
     const auto [cells, facets] = blocks_;
-    return by_cell(without_wells(error_->of_answer(*x[cells], *x[facets], *z[cells], *z[facets])).error);
+    return by_cell(without_wells(error_->of_linearized(*x[cells], *x[facets], *z[cells], *z[facets])).error);
   }
 
   void add_residual(const fields::BlockVector& x, fields::BlockVector& right_side) override {

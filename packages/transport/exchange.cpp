@@ -41,8 +41,8 @@ void Exchange::bind(const assembly::Context& context, int block, const laws::Flu
   std::vector<LocalIndex> rows, faces;
   std::vector<Real> coefficients;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    kept_.push_back(rows_[k] < context.layout(block).n_owned());
-    if (!kept_.back()) continue;
+    owned_.push_back(rows_[k] < context.layout(block).n_owned());
+    if (!owned_.back()) continue;
     rows.push_back(rows_[k]);
     faces.push_back(faces_[k]);
     coefficients.push_back(coefficients_[k]);
@@ -56,10 +56,10 @@ void Exchange::bind(const assembly::Context& context, int block, const laws::Flu
 }
 
 void Exchange::set_outside(const std::vector<Real>& pressures) {
-  std::vector<Real> kept;
-  for (std::size_t k = 0; k < kept_.size(); ++k)
-    if (kept_[k]) kept.push_back(pressures[k]);
-  outside_ = assembly::to_device(kept, "pressures outside");
+  std::vector<Real> of_owned;
+  for (std::size_t k = 0; k < owned_.size(); ++k)
+    if (owned_[k]) of_owned.push_back(pressures[k]);
+  outside_ = assembly::to_device(of_owned, "pressures outside");
 }
 
 Exchange::Coefficient Exchange::coefficient(const assembly::State& state) const {

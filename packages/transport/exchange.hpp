@@ -36,7 +36,7 @@ class Exchange {
   laws::FluidResponse response_;
   std::vector<LocalIndex> rows_, faces_;
   std::vector<Real> coefficients_;
-  std::vector<char> kept_;  // [exchange in the order of add()] row is owned
+  std::vector<char> owned_;  // [exchange in the order of add()] row is owned
   ConstView<LocalIndex*> row_, face_;
   ConstView<Real*> coefficient_, outside_;
   ConstView<laws::Conduit*> conduit_;

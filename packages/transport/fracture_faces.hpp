@@ -17,7 +17,7 @@ namespace sprekk::transport {
 
 /// Flow of a fracture face through its ridges. Unknowns: p_F and the pressures on ridges.
 template <int n>
-using FractureFace = KeptFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
+using FractureFace = StoredFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
 
 /// Flow of `Base` times a transmissivity that depends on the widening of the face, m, the last unknown. The matrix T of
 /// `Base` is that of a unit transmissivity.

@@ -273,7 +273,7 @@ struct HybridFlow {
 /// | lift   | [entity, n]     | Pa         | empty: zero                                                     |
 /// | rate   |                 | -, 1/s     | factor of T                                                     |
 template <int n, class Unknowns>
-struct KeptFlow {
+struct StoredFlow {
   static constexpr int n_ends = n;
   using Columns = Unknowns;
   using Rows = Unknowns;

@@ -35,8 +35,8 @@ class Error final : public HybridError, PlaceSums {
     if (varies()) base::collectively(*grid_.mesh->comm, [&] { add_rates(s, t, rates, result); });
     return result;
   }
-  Parts of_answer(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
-                  const fields::Vector& d_facets) const override {
+  Parts of_linearized(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
+                      const fields::Vector& d_facets) const override {
     auto [result, s] =
         parts(Potentials(grid_.flow.layouts(), rock().fluid, {&cells, &facets}, {&d_cells, &d_facets}), 0, nullptr);
     for (LocalIndex c = 0; varies() && c < grid_.mesh->n_owned_cells; ++c)
@@ -90,13 +90,13 @@ class Error final : public HybridError, PlaceSums {
     std::vector<Real> given;
     for (const auto& face : grid_.held_faces)
       for (std::size_t k = face.begin; k < face.end; ++k)
-        given.push_back(u.is_answer() ? u(Of::facet, grid_.held_places[k].facet)
-                                      : u.of_pressure(grid_.flow.prescribed(face.of, grid_.held_places[k].x, t)));
+        given.push_back(u.is_linearized() ? u(Of::facet, grid_.held_places[k].facet)
+                                          : u.of_pressure(grid_.flow.prescribed(face.of, grid_.held_places[k].x, t)));
     return given;
   }
 
-  /// Returns the components and s at all places. `kept`: receives the sums; may be null. Collective.
-  std::pair<Parts, std::vector<Real>> parts(const Potentials& u, Real t, Sums* kept) const {
+  /// Returns the components and s at all places. `saved`: receives the sums; may be null. Collective.
+  std::pair<Parts, std::vector<Real>> parts(const Potentials& u, Real t, Sums* saved) const {
     Sums sums(grid_.places.size());
     std::vector<typename InCell::Flows> in_cells;
     std::vector<typename InFace::Flows> in_faces;
@@ -128,7 +128,7 @@ class Error final : public HybridError, PlaceSums {
       sums[grid_.held_places[k].place][held_values] += given[k];
     }
     grid_.places.sum_over_ranks(sums);
-    if (kept) *kept = sums;
+    if (saved) *saved = sums;
     auto s = common_potential(sums);
     Components fluxes;
     for (LocalIndex c = 0; c < grid_.mesh->n_owned_cells; ++c)
@@ -143,7 +143,7 @@ class Error final : public HybridError, PlaceSums {
                                      : in_faces[face.of.entity][Flux::opposite_ridge(face.of.end)];
       Real missed = -u(Of::facet, grid_.held_places[face.begin].facet);
       for (std::size_t k = face.begin; k < face.end; ++k) missed += grid_.held_places[k].share * given[k];
-      result.error.push_back(u.is_answer() ? -q : missed);
+      result.error.push_back(u.is_linearized() ? -q : missed);
       result.whole.push_back(0);
     }
     return {std::move(result), std::move(s)};
@@ -267,14 +267,14 @@ class Error final : public HybridError, PlaceSums {
       if (side.resistance > 0)
         add_side(side, in_cells[side.cell][Flux::opposite(side.local_face)] / grid_.area(side), s, result);
     for (LocalIndex f = 0; dim == 2 && f < grid_.mesh->n_owned_fracture_faces; ++f)
-      add_two_points(f, in_faces[f], sums[grid_.faces[f].place.back()][inflow], u.is_answer(), result.error);
+      add_two_points(f, in_faces[f], sums[grid_.faces[f].place.back()][inflow], u.is_linearized(), result.error);
     result.whole.resize(result.error.size(), 0);
     return result;
   }
 
   /// Adds the components of two-point fluxes (2D). The first is due to the inflow into the face. In a face with a well,
   /// the distance of the well from the centre changes the resistance to both ends; this gives two further components.
-  void add_two_points(LocalIndex f, const typename InFace::Flows& q, Real inflow, bool is_answer,
+  void add_two_points(LocalIndex f, const typename InFace::Flows& q, Real inflow, bool is_linearized,
                       std::vector<Real>& error) const {
     const auto well = grid_.flow.parameters().fed.find(f);
     const bool fed = well != grid_.flow.parameters().fed.end();
@@ -283,7 +283,7 @@ class Error final : public HybridError, PlaceSums {
     for (int end = 0; end < 2; ++end) {  // the flow through end k is stored at the opposite corner, 1 - k
       const Real nearer = grid_.nearer(f, end, well->second);
       const Real factor = std::sqrt(std::abs(well->second) / grid_.flow.parameters().transmissivity[f]);
-      error.push_back((is_answer && nearer < 0 ? -1 : 1) * factor * q[Flux::opposite_ridge(end)]);
+      error.push_back((is_linearized && nearer < 0 ? -1 : 1) * factor * q[Flux::opposite_ridge(end)]);
     }
   }
 

@@ -48,8 +48,8 @@ class HybridError {
   virtual Parts of_state(const fields::Vector& cells, const fields::Vector& facets, Real t,
                          const assembly::Rates& rates) = 0;
   /// Components of a small change (d_cells, d_facets) of these potentials. Collective.
-  virtual Parts of_answer(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
-                          const fields::Vector& d_facets) const = 0;
+  virtual Parts of_linearized(const fields::Vector& cells, const fields::Vector& facets, const fields::Vector& d_cells,
+                              const fields::Vector& d_facets) const = 0;
 
   /// Linear form of potentials v and their flows q_v, summed over the ends of each entity.
   struct Forces {

@@ -42,28 +42,28 @@ class Potentials {
   /// Imports ghost values. `dp`: change of p, optional. Collective.
   Potentials(const Layouts& layouts, const laws::Fluid& fluid, const std::array<const fields::Vector*, 2>& p,
              const std::array<const fields::Vector*, 2>& dp = {})
-      : fluid_(fluid), is_answer_(dp[0]) {
+      : fluid_(fluid), is_linearized_(dp[0]) {
     for (int k = 0; k < 2; ++k) {
       p_[k] = with_ghosts(*layouts[k], *p[k]);
-      if (is_answer_) dp_[k] = with_ghosts(*layouts[k], *dp[k]);
+      if (is_linearized_) dp_[k] = with_ghosts(*layouts[k], *dp[k]);
     }
   }
 
-  bool is_answer() const { return is_answer_; }
+  bool is_linearized() const { return is_linearized_; }
   Real operator()(Of of, LocalIndex i) const {
-    return is_answer_ ? fluid_.density(p_[of][i]) * dp_[of][i] : of_pressure(p_[of][i]);
+    return is_linearized_ ? fluid_.density(p_[of][i]) * dp_[of][i] : of_pressure(p_[of][i]);
   }
   Real of_pressure(Real p) const { return potential_of(fluid_, p); }
   /// Driving potential difference from an entity to one of its ends, see laws::Fluid.
   Real drop(Of of, LocalIndex entity, LocalIndex end, Real lift) const {
     const Real a = p_[of][entity], b = p_[facet][end];
-    if (!is_answer_) return fluid_.drop(a, b, lift);
+    if (!is_linearized_) return fluid_.drop(a, b, lift);
     return fluid_.ddrop_da(a, b, lift) * dp_[of][entity] + fluid_.ddrop_db(a, b, lift) * dp_[facet][end];
   }
   /// Factor of rho_0 g in the gradient: e^2.
   Real heaviness(Of of, LocalIndex i) const {
     const Real e = fluid_.density(p_[of][i]);
-    return e * e * (is_answer_ ? 2 * fluid_.compressibility * dp_[of][i] : 1);
+    return e * e * (is_linearized_ ? 2 * fluid_.compressibility * dp_[of][i] : 1);
   }
 
  private:
@@ -75,7 +75,7 @@ class Potentials {
   }
 
   laws::Fluid fluid_;
-  bool is_answer_;
+  bool is_linearized_;
   std::array<std::vector<Real>, 2> p_, dp_;
 };
 

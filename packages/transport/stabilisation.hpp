@@ -20,11 +20,11 @@ struct Stabilisation {
   FluxScheme scheme = FluxScheme::rt0;  ///< scheme of the flow in rock
 };
 
-/// Outward volumes through the faces of cells since the start, m^3 (2D: m^2); flows if multiplied by KeptFlow::rate. T
-/// is the matrix of beta.
+/// Outward volumes through the faces of cells since the start, m^3 (2D: m^2); flows if multiplied by StoredFlow::rate.
+/// T is the matrix of beta.
 template <Shape shape>
 using StabilisingFlow =
-    KeptFlow<mesh::n_faces(shape), assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<mesh::n_faces(shape), 1>>>;
+    StoredFlow<mesh::n_faces(shape), assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<mesh::n_faces(shape), 1>>>;
 
 template <Shape shape>
 StabilisingFlow<shape> stabilising_flow(const mesh::Mesh& mesh, const Stabilisation& of) {

@@ -56,15 +56,15 @@ struct StorageCell {
 /// r = rate |f| (a e - a_old e_old).
 ///
 /// | gained   | [owned face, 2] | Pa, m | p_old minus the initial p; b_old                           |
-/// | least    | [local face]    | m     | a_min                                                      |
+/// | minimum    | [local face]    | m     | a_min                                                      |
 struct StorageFace : StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<1, 1>>;
   using Rows = assembly::Slots<assembly::Slot<1, 1>>;
-  ConstView<Real*> least;
+  ConstView<Real*> minimum;
 
-  KOKKOS_INLINE_FUNCTION bool is_wide(int e, Real widening) const { return room(e) + widening > least(e); }
+  KOKKOS_INLINE_FUNCTION bool is_wide(int e, Real widening) const { return room(e) + widening > minimum(e); }
   KOKKOS_INLINE_FUNCTION Real aperture(int e, Real widening) const {
-    return is_wide(e, widening) ? room(e) + widening : least(e);
+    return is_wide(e, widening) ? room(e) + widening : minimum(e);
   }
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[2], Real (&r)[1]) const {
     const Real old = initial(e) + gained(e, 0), step = x[0] - initial(e) - gained(e, 0);
@@ -120,7 +120,7 @@ struct Stored {
   Capacity capacity;
   Real initial;
   Real carried = 0;  ///< initial value of the field that changes the fluid
-  Real least = 0;    ///< residual aperture of a fracture, m
+  Real minimum = 0;  ///< residual aperture of a fracture, m
 };
 
 /// Computes the storage data of the entities of a loop, in their order.
@@ -149,19 +149,19 @@ class Storage final : public assembly::Module,
     assembly::Declaration d;
     d.couplings = {{of_.loop, of_.field, columns()}};
     d.stores = true;
-    const std::string kept = std::string(m == 2 ? ", widening" : "") + (changes ? ", " + of_.carried : "");
-    d.history = {{"gained " + of_.scale + kept, of_.entity, n}};
+    const std::string saved = std::string(m == 2 ? ", widening" : "") + (changes ? ", " + of_.carried : "");
+    d.history = {{"gained " + of_.scale + saved, of_.entity, n}};
     return d;
   }
 
   void bind(const assembly::Context& context) override {
-    std::vector<Real> volume, room, growth, initial, least;
+    std::vector<Real> volume, room, growth, initial, minimum;
     for (const auto& stored : find_(*context.mesh())) {
       volume.push_back(stored.volume);
       room.push_back(stored.capacity.room);
       growth.push_back(stored.capacity.growth);
       initial.push_back(stored.initial);
-      least.push_back(stored.least);
+      minimum.push_back(stored.minimum);
       carried_.push_back(stored.carried);
       largest_ = std::max(largest_, std::abs(stored.initial));
     }
@@ -169,7 +169,7 @@ class Storage final : public assembly::Module,
     op_.room = assembly::to_device(room, "room");
     op_.growth = assembly::to_device(growth, "growth");
     op_.initial = assembly::to_device(initial, "initial values");
-    if constexpr (m == 2) op_.least = assembly::to_device(least, "least apertures");
+    if constexpr (m == 2) op_.minimum = assembly::to_device(minimum, "residual aperture");
     std::vector<int> columns;
     for (const auto& name : this->columns()) columns.push_back(context.field(name));
     assembler_ =
@@ -178,9 +178,9 @@ class Storage final : public assembly::Module,
 
   void initial_history(const std::vector<View<Real**>>& history) const override {
     if (!changes) return;
-    const auto kept = base::to_host(history[0]);
-    for (std::size_t e = 0; e < kept.extent(0); ++e) kept(e, m) = carried_[e];
-    Kokkos::deep_copy(history[0], kept);
+    const auto saved = base::to_host(history[0]);
+    for (std::size_t e = 0; e < saved.extent(0); ++e) saved(e, m) = carried_[e];
+    Kokkos::deep_copy(history[0], saved);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -284,7 +284,7 @@ std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameter
                         .capacity = {.room = parameters.aperture[f], .growth = 0},
                         .initial = mean(face, parameters.initial),
                         .carried = parameters.change ? mean(face, parameters.change->initial) : 0,
-                        .least = parameters.least[f]});
+                        .minimum = parameters.minimum[f]});
     }
     return stored;
   };

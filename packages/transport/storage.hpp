@@ -36,7 +36,7 @@ std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters);
 
 struct FractureStorageParameters {
   std::vector<Real> aperture = {};  ///< [local fracture face] a_0, m
-  std::vector<Real> least = {};     ///< [local fracture face] residual aperture, m
+  std::vector<Real> minimum = {};   ///< [local fracture face] residual aperture, m
   laws::Fluid fluid = {};
   base::Expression initial = 0;  ///< pressure at the start, Pa
   bool widens = false;           ///< adds the field "widening" of PoroelasticCoupling to the aperture

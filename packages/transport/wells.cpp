@@ -5,7 +5,7 @@
 #include "base/check.hpp"
 #include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
-#include "transport/brought.hpp"
+#include "transport/injected_quantity.hpp"
 #include "transport/exchange.hpp"
 #include "transport/well_connections.hpp"
 
@@ -73,14 +73,14 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
       exchange_[k].add_residual(state, r);
       load_[k].add_to(r[blocks_[k]]);
     }
-    for (const auto& brought : brought_) brought.add_residual(state, r);
+    for (const auto& injected : injected_) injected.add_residual(state, r);
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
     for (const auto& exchange : exchange_) exchange.add_jacobian(state, J);
-    for (const auto& brought : brought_) brought.add_jacobian(state, J);
+    for (const auto& injected : injected_) injected.add_jacobian(state, J);
   }
-  bool symmetric(const assembly::State&) const override { return brought_.empty(); }
+  bool symmetric(const assembly::State&) const override { return injected_.empty(); }
 
   bool constant_load() const override {
     return !widens_ && std::all_of(parameters_.wells.begin(), parameters_.wells.end(),
@@ -117,10 +117,10 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
   void commit(assembly::State& state) const override {
     if (!widens_) return;
     const auto widening = state.x[widening_];
-    const auto kept = state.history[0];
+    const auto saved = state.history[0];
     Kokkos::parallel_for(
-        "widening", Kokkos::RangePolicy<Execution>(0, kept.extent(0)),
-        KOKKOS_LAMBDA(int f) { kept(f, 0) = widening(f); });
+        "widening", Kokkos::RangePolicy<Execution>(0, saved.extent(0)),
+        KOKKOS_LAMBDA(int f) { saved(f, 0) = widening(f); });
   }
 
   /// Scales: the pressure in wells, or the pressure difference due to a rate.
@@ -179,7 +179,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
       auto next = of_well + 3 + mesh_->fracture_names.size();
       for (std::size_t j = 0; j < parameters_.carried.size(); ++j) {
         const auto control = this->control(c, parameters_.carried[j], state.t);
-        const Real there = carried_at(state, j, c), u = product > 0 && control.brings ? control.value : there;
+        const Real there = carried_at(state, j, c), u = product > 0 && control.prescribes ? control.value : there;
         totals[next++].value += share * u;
         totals[next++].value +=
             parameters_.carried[j].capacity * (flow * there + product * (u - there));  // same expression as in the row
@@ -205,19 +205,19 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
   }
   bool is_linear() const { return parameters_.fluid.compressibility == 0 && !widens_ && parameters_.carried.empty(); }
 
-  /// Sets up the transported quantities: for each of them one Brought for rock and one for fractures.
+  /// Sets up the transported quantities: for each of them one InjectedQuantity for rock and one for fractures.
   void bind_carried(const assembly::Context& context) {
     for (const auto& carried : parameters_.carried) {
       carried_units_.push_back(context.layout(context.field(carried.field)).field().unit);
       for (const bool in_fractures : {false, true}) {
         const bool widens = widens_ && in_fractures;
-        auto& brought = brought_.emplace_back();
+        auto& injected = injected_.emplace_back();
         for (const auto& c : connections_)
           if ((c.face >= 0) == in_fractures)
-            brought.add(c.row, widens ? c.index : index(c), well(c).pressure.has_value(), c.face);
+            injected.add(c.row, widens ? c.index : index(c), well(c).pressure.has_value(), c.face);
         carried_.push_back(context.field(in_fractures ? "face " + carried.field : carried.field));
-        brought.bind(context, blocks_[in_fractures], carried_.back(), parameters_.fluid, carried.capacity,
-                     widens ? parameters_.faces : std::vector<laws::Conduit>(), change(in_fractures));
+        injected.bind(context, blocks_[in_fractures], carried_.back(), parameters_.fluid, carried.capacity,
+                      widens ? parameters_.faces : std::vector<laws::Conduit>(), change(in_fractures));
       }
     }
   }
@@ -240,20 +240,20 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
   }
 
   void set_carried(Real t) {
-    for (std::size_t k = 0; k < brought_.size(); ++k) {
-      std::vector<Brought::Control> controls;
+    for (std::size_t k = 0; k < injected_.size(); ++k) {
+      std::vector<InjectedQuantity::Control> controls;
       for (const auto& c : connections_)
         if ((c.face >= 0) == (k % 2 == 1)) controls.push_back(control(c, parameters_.carried[k / 2], t));
-      brought_[k].set(controls);
+      injected_[k].set(controls);
     }
   }
 
-  Brought::Control control(const WellConnection& c, const Carried& carried, Real t) const {
+  InjectedQuantity::Control control(const WellConnection& c, const Carried& carried, Real t) const {
     const auto value = carried.in_wells.find(well(c).name);
-    const bool brings = value != carried.in_wells.end();
+    const bool prescribes = value != carried.in_wells.end();
     return {.driver = well(c).pressure ? pressure(c, t) : rate(c, t),
-            .value = brings ? value->second(well(c).points[0], t) : 0,
-            .brings = brings};
+            .value = prescribes ? value->second(well(c).points[0], t) : 0,
+            .prescribes = prescribes};
   }
 
   Real carried_at(const assembly::State& state, std::size_t j, const WellConnection& c) const {
@@ -310,7 +310,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
   int widening_ = -1;
   std::array<Exchange, 2> exchange_;        // wells with prescribed pressure
   std::array<assembly::Load, 2> load_;      // [owned row] wells with prescribed rate, m^3/s
-  std::vector<Brought> brought_;            // [2 carried + in fractures]
+  std::vector<InjectedQuantity> injected_;  // [2 carried + in fractures]
   std::vector<int> carried_;                // blocks of their rows
   std::vector<std::string> carried_units_;  // [carried] unit of u
 };

@@ -32,7 +32,7 @@ struct WellsParameters {
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};
   std::vector<laws::Conduit> faces = {};  ///< [local fracture face]
-  std::vector<Carried> carried = {};      ///< quantities that the fluid transports, see Brought
+  std::vector<Carried> carried = {};      ///< quantities that the fluid transports, see InjectedQuantity
 };
 
 /// Creates the module of the wells. It adds -W (p_w - p) to the rows of "pressure" of cells that contain a part of a

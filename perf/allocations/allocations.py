@@ -26,8 +26,8 @@ def run(options, sets, steps):
     entries = (*sets, *options.set, f"Time.end={steps}", f"Time.steps={steps}", f"Output.every={steps}")
     file.unlink(missing_ok=True)
     program.checked(program.command(options.binary, SCENE, directory, entries), LD_PRELOAD=str(options.counter), SPREKK_ALLOCATIONS=str(file))
-    told = [json.loads(line) for line in file.read_text().splitlines()]
-    return max((process["calls"], process["bytes"]) for process in told)  # MPI's own processes allocate less
+    reported = [json.loads(line) for line in file.read_text().splitlines()]
+    return max((process["calls"], process["bytes"]) for process in reported)  # MPI's own processes allocate less
 
 
 def of_step(options, sets, step):
@@ -45,12 +45,12 @@ def main(words):
     parser.add_argument("--counter", type=common.absolute, default=counter, help="the compiled counter.cpp")
     options = parser.parse_args(words)
     chosen = common.matching(options, SERIES)
-    printed, most = table.Table(COLUMNS, 22), 0
+    printed, maximum = table.Table(COLUMNS, 22), 0
     for name in chosen:
         sets, last = SERIES[name]
         found = {step: of_step(options, sets, step) for step in (EARLY, QUICK_LATE if options.quick else last)}
         for step, (calls, size) in found.items():
             printed.add([name, step, calls, size / 1e3])
         early, late = found.values()
-        most = max([most, *(b / max(a, 1) - 1 for a, b in zip(early, late))])
-    return table.finish(options, printed, {"growth": most}, {"growth": ".4f"}, {"growth": MORE}) or int(most > MORE)
+        maximum = max([maximum, *(b / max(a, 1) - 1 for a, b in zip(early, late))])
+    return table.finish(options, printed, {"growth": maximum}, {"growth": ".4f"}, {"growth": MORE}) or int(maximum > MORE)

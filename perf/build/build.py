@@ -125,7 +125,7 @@ def report(what, seconds, lines, cpu, wall, table):
     for name, (n, total, read) in sorted(targets.items(), key=lambda item: -item[1][1]):
         print(f"{name:32} {n:6} {total:8.1f} {read:10}")
         table.writerow([what, name, "", n, f"{total:.2f}", read])
-    print(f"{'most expensive file':64} {'CPU s':>8} {'lines':>10}")
+    print(f"{'maximum expensive file':64} {'CPU s':>8} {'lines':>10}")
     for name in sorted(seconds, key=seconds.get, reverse=True)[:10]:
         short = re.sub(r"CMakeFiles/[^/]+\.dir/", "", name).removesuffix(".o")
         print(f"{short:64} {seconds[name]:8.1f} {lines[name]:10}")

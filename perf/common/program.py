@@ -94,7 +94,7 @@ class Run:
         return sum(self.krylov) / max(1, len(self.krylov))
 
     @property
-    def most(self):
+    def maximum(self):
         return max(self.krylov, default=0)
 
     @property
@@ -103,12 +103,12 @@ class Run:
         return max((solve["residual"] for solve in self.solves if solve["used"]), default=None)
 
     @property
-    def most_used(self):
+    def max_used(self):
         """Largest number of iterations of a linear solve used by Newton's method."""
         return max((solve["iterations"] for solve in self.solves if solve["used"]), default=0)
 
     @property
-    def most_given_up(self):
+    def max_given_up(self):
         """Largest number of iterations of a linear solve in a failed attempt of Newton's method."""
         return max((solve["iterations"] for solve in self.solves if not solve["used"]), default=0)
 
@@ -193,11 +193,11 @@ def measured(options, scene, entries, ranks):
     return json.loads(checked([options.program, ROOT / "xml" / scene, *entries, *options.set], ranks))
 
 
-def run(binary, scene, directory, entries=(), ranks=1, cpu=None, clock=3600, words=(), anew=True, kind=Run):
-    """Runs a scene into a directory, which is emptied first (`anew`); limits in CPU seconds per rank and in seconds.
+def run(binary, scene, directory, entries=(), ranks=1, cpu=None, clock=3600, words=(), clear=True, kind=Run):
+    """Runs a scene into a directory, which is emptied first (`clear`); limits in CPU seconds per rank and in seconds.
 
     A failed program is recorded in the result, which is of the class `kind`."""
-    if anew:
+    if clear:
         shutil.rmtree(directory, ignore_errors=True)
     limited = ["prlimit", f"--cpu={cpu}"] if cpu else []
     begin = time.monotonic()

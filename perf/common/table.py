@@ -6,11 +6,11 @@ import sys
 import numpy as np
 
 
-def line(values, columns, width, least=7):
+def line(values, columns, width, minimum=7):
     """Line of a table with right-aligned numbers; `columns` are {name: format}, the first is `width` wide."""
     words = ["-" if value is None else value if isinstance(value, str) else format(value, how)
              for value, how in zip(values, columns.values())]
-    numbers = (f"{word:>{max(least, len(name) + 2)}}" for name, word in zip(list(columns)[1:], words[1:]))
+    numbers = (f"{word:>{max(minimum, len(name) + 2)}}" for name, word in zip(list(columns)[1:], words[1:]))
     return f"{words[0]:{width}}" + "".join(numbers)
 
 
@@ -80,7 +80,7 @@ def results(values, formats):
 def missed(values, bounds):
     """Returns a message for each value above its bound, or below the bound of (+1, bound). NaN is not measured."""
     signed = {name: bound if isinstance(bound, tuple) else (-1, bound) for name, bound in bounds.items()}
-    return [f"missed: {name} = {values[name]:.3g}, required: {'at least' if sign > 0 else 'at most'} {bound:g}"
+    return [f"missed: {name} = {values[name]:.3g}, required: {'at minimum' if sign > 0 else 'at maximum'} {bound:g}"
             for name, (sign, bound) in signed.items() if sign * values[name] < sign * bound]
 
 

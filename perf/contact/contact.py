@@ -90,8 +90,8 @@ def compare(run, other):
     if found and run.scene.several and worst <= BOUNDS["worst_violation"]:
         notes.append(f"  two equilibria: both states obey the laws to {worst:.0e}")
     elif not all(near for *_, near in found):
-        loose = [step["time"] for step in run.steps if step.get("loose") and step["time"] <= found[0][0]]
-        run.failures.append("states depend on the number of ranks" + (f", from t = {loose[0]:g} on, when a piece was loose" if loose else ""))
+        floating = [step["time"] for step in run.steps if step.get("floating") and step["time"] <= found[0][0]]
+        run.failures.append("states depend on the number of ranks" + (f", from t = {floating[0]:g} on, when a piece was floating" if floating else ""))
     return notes + [f"  t = {t:g}, face at ({', '.join(f'{x:g}' for x in place)}): state {states[0]} on one rank, {states[1]} on "
                     f"several, {away:.0e} from the limit" for t, place, states, away, _ in found]
 
@@ -110,7 +110,7 @@ def row(run):
 
 
 def line(values):
-    return table.line(values, COLUMNS, width=28, least=8)
+    return table.line(values, COLUMNS, width=28, minimum=8)
 
 
 def same_counts(runs):
@@ -133,22 +133,22 @@ def summary(runs):
             "p90": np.percentile(largest, 90, method="higher"), "max": max(largest), "worst_violation": max(violations, default=0)}
 
 
-def bar_chart(runs, file, most=40):
-    """Draws the median and largest number of iterations of each scene. Bars end at `most` and are labelled with
+def bar_chart(runs, file, maximum=40):
+    """Draws the median and largest number of iterations of each scene. Bars end at `maximum` and are labelled with
     the largest."""
     import style
     counted = [run for run in runs if run.measured]
     figure, axes = style.plt.subplots(figsize=(7, 0.6 + 0.14 * len(counted)))
     heights = range(len(counted), 0, -1)
     for run, height in zip(counted, heights):
-        axes.barh(height, min(max(run.newton), most), color=style.LINES[0])
-        axes.barh(height, min(np.median(run.newton), most), color=style.LINES[4])
-        axes.text(min(max(run.newton), most) + 0.3, height, max(run.newton), va="center", fontsize=5)
+        axes.barh(height, min(max(run.newton), maximum), color=style.LINES[0])
+        axes.barh(height, min(np.median(run.newton), maximum), color=style.LINES[4])
+        axes.text(min(max(run.newton), maximum) + 0.3, height, max(run.newton), va="center", fontsize=5)
     axes.set_yticks(heights, [run.scene.name for run in counted], fontsize=6)
     for run, label in zip(counted, axes.get_yticklabels()):
         label.set_color(style.LINES[3] if run.failures else style.INK)
     axes.set_xlabel("Newton iterations in a step: median (light), largest (dark); names of scenes that failed are red")
-    axes.set(xlim=(0, most + 3), ylim=(0, len(counted) + 1))
+    axes.set(xlim=(0, maximum + 3), ylim=(0, len(counted) + 1))
     figure.savefig(file, dpi=150)
 
 

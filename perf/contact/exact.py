@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 
-class Answers:
+class Errors:
     """Largest error of several quantities, each relative to its reference value, or to a scale if that value is 0."""
 
     def __init__(self):
@@ -66,7 +66,7 @@ def block(run):
     height = run.input.numbers("Mesh", "upper corner")[-1] - run.input.numbers("Mesh", "lower corner")[-1]
     loads, pressures = list(zip(table(run, "tangential"), table(run, "normal"))), table(run, "p")
     k_n = (rock["lam"] + 2 * rock["G"]) / height
-    size, slipped, answers = max(map(abs, sum(loads, ()))), 0.0, Answers()
+    size, slipped, errors = max(map(abs, sum(loads, ()))), 0.0, Errors()
     assert len(loads) == len(run.faces)
     for (d_t, d_n), pressure, faces in zip(loads, pressures or [0] * len(loads), run.faces):
         state, shear, normal, p, opening = column(joint, rock, height, d_t, d_n + pressure / k_n, slipped)
@@ -74,11 +74,11 @@ def block(run):
         for values, reference, scale in ((faces.traction[:, 0], normal, rock["G"] * size / height),
                                          (faces.traction[:, tangent], shear, rock["G"] * size / height),
                                          (faces.plastic[:, tangent], p, size), (faces.jump[:, 0], opening, size)):
-            answers.add(values, reference, scale)
+            errors.add(values, reference, scale)
         if np.any(faces.state != state):
             return math.inf
         slipped = p
-    return answers.error
+    return errors.error
 
 
 def seed(run):
@@ -87,12 +87,12 @@ def seed(run):
 
     The normal of the fracture is along y."""
     d, joint, faces = run.input.numbers("Boundary conditions", "moved", "displacement"), run.input.joints[0], run.faces[-1]
-    shift, pushed, answers = math.hypot(d[0], *d[2:]), d[1] < 0, Answers()
+    shift, pushed, errors = math.hypot(d[0], *d[2:]), d[1] < 0, Errors()
     for values, reference in ((faces.jump[:, 0], 0.0 if pushed else d[1]), (faces.jump[:, 1:], shift),
                               (faces.plastic[:, 1:], 0.0 if pushed else shift),
                               (faces.traction[:, 1:], joint.stiffness * shift if pushed else 0.0)):
-        answers.add(values if values.ndim == 1 else np.linalg.norm(values, axis=1), reference, 1)
-    return answers.error
+        errors.add(values if values.ndim == 1 else np.linalg.norm(values, axis=1), reference, 1)
+    return errors.error
 
 
 def means(run, quantity):
@@ -138,20 +138,20 @@ def incline(run):
     sin(beta)."""
     beta = math.radians(abs(run.input.number("Mesh", "rotation")))
     weight = -run.input.numbers("Bulk", "body force")[-1] * 0.5
-    answers = Answers()
-    answers.add(run.faces[-1].traction[:, 0], -weight * math.cos(beta), weight)
-    answers.add(np.linalg.norm(run.faces[-1].traction[:, 1:], axis=1), weight * math.sin(beta), weight)
-    return answers.error
+    errors = Errors()
+    errors.add(run.faces[-1].traction[:, 0], -weight * math.cos(beta), weight)
+    errors.add(np.linalg.norm(run.faces[-1].traction[:, 1:], axis=1), weight * math.sin(beta), weight)
+    return errors.error
 
 
 def hanging(run):
     """Checks a unit cube held by one face: this face carries the weight, without shear; the others carry nothing."""
     weight = -run.input.numbers("Bulk", "body force")[-1]
-    answers, traction = Answers(), run.faces[-1].traction
-    answers.add(traction[:, 0].min(), -weight, weight)
-    answers.add(traction[:, 1:], 0.0, weight)
-    answers.add(np.sort(traction[:, 0])[1:], 0.0, weight)
-    return answers.error
+    errors, traction = Errors(), run.faces[-1].traction
+    errors.add(traction[:, 0].min(), -weight, weight)
+    errors.add(traction[:, 1:], 0.0, weight)
+    errors.add(np.sort(traction[:, 0])[1:], 0.0, weight)
+    return errors.error
 
 
 def uniform(stress, normals, slips):
@@ -160,7 +160,7 @@ def uniform(stress, normals, slips):
 
     normals[k] belongs to fracture k, in the order of names; its slip is slips[k] times lambda_t."""
     def check(run):
-        answers, faces = Answers(), run.faces[-1]
+        errors, faces = Errors(), run.faces[-1]
         for k, (normal, slip, joint) in enumerate(zip(normals, slips, run.input.joints)):
             traction = np.asarray(stress) @ normal
             N = -traction @ normal
@@ -169,8 +169,8 @@ def uniform(stress, normals, slips):
             for values, reference in ((faces.traction[on, 0], -N), (np.linalg.norm(faces.traction[on, 1:], axis=1), shear),
                                       (faces.jump[on, 0], float(joint.closed_gap(p, -N))),
                                       (np.linalg.norm(faces.jump[on, 1:], axis=1), p + shear / joint.stiffness)):
-                answers.add(values, reference, 0.1)
-        return answers.error
+                errors.add(values, reference, 0.1)
+        return errors.error
     return check
 
 

@@ -130,7 +130,7 @@ def admissible(input_, rock, time):
         return True
     given = sum(motions.work(piece, place, force[:, None]) for piece, place, force in forces)
     given /= max(np.linalg.norm(force) for *_, force in forces)
-    friction = dict(zip(names, (law.least_friction for law in input_.laws)))
+    friction = dict(zip(names, (law.min_friction for law in input_.laws)))
     columns = [np.zeros((motions.count, 1))]
     for face in parts.fractures:
         if face.pieces[0] != face.pieces[1]:

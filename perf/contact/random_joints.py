@@ -79,15 +79,15 @@ def dilation(draw, law, stress, slip, kind):
 
 def closure(draw, law, stress, kind):
     rng = draw.rng
-    most = draw.size * draw.power(-6, -4.5)
-    stiffness = stress / most * draw.power(-0.5, 2)
+    maximum = draw.size * draw.power(-6, -4.5)
+    stiffness = stress / maximum * draw.power(-0.5, 2)
     if kind == "Barton-Bandis":
         if draw.chance(0.6):
-            law |= {"normal stiffness": stiffness, "maximum closure": most}
+            law |= {"normal stiffness": stiffness, "maximum closure": maximum}
         return
     law["closure"] = kind
     if kind == "Barton-Bandis with memory":
-        law |= {"normal stiffness": stiffness, "maximum closure": most, "irrecoverable part of closure": rng.uniform(0.1, 0.8)}
+        law |= {"normal stiffness": stiffness, "maximum closure": maximum, "irrecoverable part of closure": rng.uniform(0.1, 0.8)}
     elif kind == "Bandis":
         roughness(draw, law, stress)
         law |= {"joint wall strength": rng.uniform(40e6, 150e6), "joint roughness coefficient": rng.uniform(6, 18),

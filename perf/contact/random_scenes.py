@@ -232,13 +232,13 @@ def turned(draw):
     return angle if draw.dim == 2 else angle | {"rotation axis": [draw.rng.gauss(0, 1) for _ in range(3)]}
 
 
-def random_fractures(draw, high, cells, most, through=None):
+def random_fractures(draw, high, cells, maximum, through=None):
     """Corners of two or more fractures. `through` is the probability, per direction, that a fracture spans the box."""
     rng, dim = draw.rng, draw.dim
     through = rng.choice((0.1, 0.5, 1)) if through is None else through
     planes = [(axis, plane) for axis in range(dim) for plane in range(1, cells[axis])]
     fractures = {}
-    for k, (axis, plane) in enumerate(rng.sample(planes, min(len(planes), rng.randint(2, most)))):
+    for k, (axis, plane) in enumerate(rng.sample(planes, min(len(planes), rng.randint(2, maximum)))):
         extents = [(0, n) if draw.chance(through) else sorted(rng.sample(range(n + 1), 2)) for n in cells]
         fractures[f"f{k}"] = rectangle(high, cells, axis, plane, extents)
     return fractures
@@ -342,8 +342,8 @@ def network(draw):
     rng, dim, size = draw.rng, draw.dim, draw.size
     order = 2 if draw.chance(0.2) else 1
 
-    def fractures(most):
-        entries = {"number": rng.randint(2, most), "seed": rng.randrange(10**6), "shortest": size * rng.uniform(0.1, 0.35),
+    def fractures(maximum):
+        entries = {"number": rng.randint(2, maximum), "seed": rng.randrange(10**6), "shortest": size * rng.uniform(0.1, 0.35),
                    "longest": size * rng.uniform(0.4, 1.2), "exponent": rng.choice((1.0, 2.5))}
         if draw.chance(0.5):
             entries |= {"strike": rng.uniform(0, 180), "concentration": rng.choice((0.0, 5.0, 30.0))}

@@ -211,7 +211,7 @@ def patches():
                 exact=exact.uniform(crossing, exact.at_angles(0, 90), [0, 0.8]), quick=True)
 
 
-def no_answer():
+def no_solution():
     """Floating blocks and forces without equilibrium, each with a similar load that has an equilibrium."""
     for dim in (2, 3):
         slope, resting = f"contact/incline_{dim}d.xml", f"contact/resting_{dim}d.xml"
@@ -254,5 +254,5 @@ def histories():
 
 
 def scenes():
-    for part in (seed, networks, blocks, extremes, units, patches, no_answer, all_change, drift, histories):
+    for part in (seed, networks, blocks, extremes, units, patches, no_solution, all_change, drift, histories):
         yield from part()

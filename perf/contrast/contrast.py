@@ -128,9 +128,9 @@ def draw(rows, file):
     for k, cell in enumerate(CELLS):
         of = [(names.index((case.beyond, case.name)), run) for case, kind, run in rows if kind == cell and run.krylov]
         height = [len(names) - at + 0.18 * (1 - 2 * k) for at, _ in of]
-        ax.hlines(height, [run.mean for _, run in of], [run.most for _, run in of], color=style.LINES[k], linewidth=1)
+        ax.hlines(height, [run.mean for _, run in of], [run.maximum for _, run in of], color=style.LINES[k], linewidth=1)
         ax.plot([run.mean for _, run in of], height, "o", color=style.LINES[k], markersize=3.5, label=f"{cell}: mean, line to the largest")
-        failed = [(run.most, h) for (_, run), h in zip(of, height) if run.failure]
+        failed = [(run.maximum, h) for (_, run), h in zip(of, height) if run.failure]
         if failed:
             ax.plot(*zip(*failed), "x", color=style.INK, markersize=6, label=f"{cell}: failed")
     ax.axvline(BOUNDS["max_krylov"], color=style.FAINT, linestyle=":", label="asked, of those above the line")
@@ -155,11 +155,11 @@ def main(words):
         run = linear.run(options, sets, re.sub(r"[^\w.+-]+", "_", f"{cell} {case.name}"), time_limit=TIME_LIMIT)
         rows.append((case, cell, run))
         name = f"{'beyond: ' if case.beyond else ''}{cell}, {case.name}"
-        printed.add([name, run.unknowns, *run.fractions, run.mean_newton, run.cuts, len(run.krylov), run.mean, run.most,
-                     run.most_used, lost(run), run.residual, run.total_time], [f"failed: {run.failure}"] if run.failure else ())
+        printed.add([name, run.unknowns, *run.fractions, run.mean_newton, run.cuts, len(run.krylov), run.mean, run.maximum,
+                     run.max_used, lost(run), run.residual, run.total_time], [f"failed: {run.failure}"] if run.failure else ())
     draw(rows, options.output / "contrast.png")
     within = [run for case, _, run in rows if not case.beyond]
     unsolved = sum(case.wedged and found_no_state(run) for case, _, run in rows)
-    total = {"max_krylov": max((run.most for run in within), default=0), "failures": sum(bool(run.failure) for *_, run in rows) - unsolved,
-             "max_used": max((run.most_used for run in within), default=0), "lost": sum(lost(run) for *_, run in rows), "unsolved": unsolved}
+    total = {"max_krylov": max((run.maximum for run in within), default=0), "failures": sum(bool(run.failure) for *_, run in rows) - unsolved,
+             "max_used": max((run.max_used for run in within), default=0), "lost": sum(lost(run) for *_, run in rows), "unsolved": unsolved}
     return table.finish(options, printed, total, FORMATS, BOUNDS) or int(total["failures"] > 0)

@@ -58,7 +58,7 @@ class Constants:
     alpha: float
     start_aperture: np.ndarray
     start_opening: np.ndarray
-    least: np.ndarray
+    minimum: np.ndarray
     capacity: np.ndarray
     face_capacity: np.ndarray
     beta: np.ndarray
@@ -132,11 +132,11 @@ class Balances:
             return k
         k.area, k.p_start_faces = fractures.sizes, self._start_pressures(fractures.centres)
         n = len(k.area)
-        k.start_aperture, k.start_opening, k.least, k.face_capacity = (np.zeros(n) for _ in range(4))
+        k.start_aperture, k.start_opening, k.minimum, k.face_capacity = (np.zeros(n) for _ in range(4))
         for j, law in enumerate(self._joints()):
             on = fractures.cell_data["fracture"].astype(int) == j
             k.start_opening[on] = self._start_opening(law, fractures, on, k.p_start_faces[on])
-            k.least[on] = law.entry("residual aperture", 0) if self.flows else 0
+            k.minimum[on] = law.entry("residual aperture", 0) if self.flows else 0
             k.start_aperture[on] = law.entry("initial aperture", 0) + k.start_opening[on]
             k.face_capacity[on] = law.entry("volumetric heat capacity", self.c)
         return k
@@ -205,8 +205,8 @@ class Balances:
     def aperture(self, opening):
         """[face] Aperture that stores fluid."""
         k = self.k
-        least = k.least if self.flows else 1e-9 * np.ptp(self.run.states[0].bulk.points, axis=0).max()
-        return np.maximum(k.start_aperture + opening - k.start_opening, least)
+        minimum = k.minimum if self.flows else 1e-9 * np.ptp(self.run.states[0].bulk.points, axis=0).max()
+        return np.maximum(k.start_aperture + opening - k.start_opening, minimum)
 
     def rates(self, factor, now, old, older):
         nu, beta = factor
@@ -293,9 +293,9 @@ class Balances:
             of_rock, of_faces = self.sources(state.time)
             given = sum(incoming) + of_rock.sum() + of_faces.sum()
             in_pores = (self.k.volume * self.k.growth * (abs(self.k.p_start) + abs(state.bulk.cell_data["pressure"]))).sum()
-            least = ROUNDING * factor[0] * (abs(now.pores).sum() + in_pores + abs(now.faces).sum() + self.in_rock(now))
+            minimum = ROUNDING * factor[0] * (abs(now.pores).sum() + in_pores + abs(now.faces).sum() + self.in_rock(now))
             scale = max(sum(map(abs, incoming)) + abs(of_rock).sum() + abs(of_faces).sum(),
-                        abs(cells).sum() + abs(faces).sum() + abs(rock).sum(), least)
+                        abs(cells).sum() + abs(faces).sum() + abs(rock).sum(), minimum)
             all_.append(Balance(state.time, cells.sum() + faces.sum() + rock.sum() - given, scale))
         return all_
 
@@ -402,7 +402,7 @@ class SomeFaces:
     """Argument `faces` of JointLaw."""
     normal: np.ndarray
     slip: np.ndarray
-    told: dict
+    history: dict
 
     @classmethod
     def at_start(cls, normal):

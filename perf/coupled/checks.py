@@ -20,10 +20,10 @@ def balances(written):
     for what, steps in (("fluid", own.of_fluid()), ("energy", own.of_energy())):
         scale = max((step.scale for step in steps), default=0)
         off = [(max(abs(step.surplus) - step.unknown, 0) / scale, step) for step in steps] if scale > 0 else []
-        most, step = max(off, key=lambda pair: pair[0], default=(0.0, None))
-        worst.append(most if steps else None)
-        if not most <= BALANCE:
-            lines.append(f"balance of {what}: {step.surplus:.3e} per s more is stored at t = {step.time:g} than comes in, {most:.1e} of "
+        maximum, step = max(off, key=lambda pair: pair[0], default=(0.0, None))
+        worst.append(maximum if steps else None)
+        if not maximum <= BALANCE:
+            lines.append(f"balance of {what}: {step.surplus:.3e} per s more is stored at t = {step.time:g} than comes in, {maximum:.1e} of "
                          f"the largest flow, {scale:.3e}")
     return lines, worst
 
@@ -72,9 +72,9 @@ def apertures(written):
         data = state.fractures.cell_data
         size = np.abs(data["jump"]).max(initial=0) if "jump" in data else 0
         for name in ("aperture", "hydraulic aperture"):
-            least = data[name].min(initial=0) if name in data else 0
-            if not least >= -ROUNDING * max(size, 1e-3):
-                lines.append(f'"{name}" is {least:.3e} m at t = {state.time:g}')
+            minimum = data[name].min(initial=0) if name in data else 0
+            if not minimum >= -ROUNDING * max(size, 1e-3):
+                lines.append(f'"{name}" is {minimum:.3e} m at t = {state.time:g}')
     return lines[:1]
 
 

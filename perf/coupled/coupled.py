@@ -83,7 +83,7 @@ def restarted(options, scene, directory, run):
     if len(checkpoints) < 2:
         return None, [f"restart: {len(checkpoints)} checkpoints after {len(run.ended.results['steps'])} steps"]
     shutil.rmtree(checkpoints[-1])
-    ended = program.run(options.binary, scene, other, CHECKPOINTS, **LIMITS, words=("--restart",), anew=False)
+    ended = program.run(options.binary, scene, other, CHECKPOINTS, **LIMITS, words=("--restart",), clear=False)
     if ended.status != 0 or not ended.results.get("restarts"):
         return None, [f"restart: status {ended.status}: {ended.last_line}"]
     return compared("restart", run, Written(other, ended.results), 0.0)

@@ -298,8 +298,8 @@ def tip_beside_boundary(ends, high, cells):
 def scene(draw):
     rng, dim = draw.rng, draw.dim
     order = 2 if draw.deforms and draw.chance(0.15) else 1
-    most = 9 // order if dim == 2 else 3 if order == 1 else 2
-    cells = [rng.randint(most // 2 + 1, most) for _ in range(dim)]
+    maximum = 9 // order if dim == 2 else 3 if order == 1 else 2
+    cells = [rng.randint(maximum // 2 + 1, maximum) for _ in range(dim)]
     high = [draw.size * rng.choice((1, 1, rng.uniform(0.5, 2))) for _ in range(dim)]
     planes = [(axis, plane) for axis in range(dim) for plane in range(1, cells[axis])]
     chosen = rng.sample(planes, min(len(planes), rng.choice((0, 1, 2, 3, 4) if dim == 2 else (0, 1, 2))))

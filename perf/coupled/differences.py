@@ -22,12 +22,12 @@ class Scales:
                     kind = kind_of(name)
                     size = np.abs(values - self.start.get(kind, 0)).max(initial=0)
                     self.largest[kind] = max(self.largest.get(kind, 0), size, 1e-5 * abs(self.start.get(kind, 0)))
-        self._least_fluxes(written)
+        self._min_fluxes(written)
         if self.start["pressure"]:  # stress caused by the initial pressure
             self.largest["stress"] = max(self.largest.get("stress", 0), abs(self.start["pressure"]))
-        self._least_stresses(written)
+        self._min_stresses(written)
 
-    def _least_fluxes(self, written):
+    def _min_fluxes(self, written):
         """Raises the scales of fluxes to their round-off.
 
         The round-off of driving pressures and temperatures is 1e-14 of their level; it is multiplied by the
@@ -49,16 +49,16 @@ class Scales:
                             for word in m.get("thermal conductivity", "{}").strip("{}").split(",") if word.strip()), default=0)
             self.largest["heat flux"] = max(self.largest["heat flux"], ROUNDING / ALLOWED * level * conducts / edge)
 
-    def _least_stresses(self, written):
+    def _min_stresses(self, written):
         """Thermal stress and expansion are known to the rounding of temperature: 1e-14 of its level."""
         rocks = [m for m in written.entries["Materials"].values() if "Young's modulus" in m]
         level = ROUNDING / ALLOWED * (abs(self.start["temperature"]) + self.largest.get("temperature", 0))
         expansion = level * max((float(m.get("thermal expansion", 0)) for m in rocks), default=0)
         stiffness = max((float(m["Young's modulus"]) for m in rocks), default=0)
         extent = np.ptp(written.states[0].bulk.points, axis=0).max()
-        for kind, least in (("stress", stiffness * expansion), ("length", extent * expansion)):
+        for kind, minimum in (("stress", stiffness * expansion), ("length", extent * expansion)):
             if kind in self.largest:
-                self.largest[kind] = max(self.largest[kind], least)
+                self.largest[kind] = max(self.largest[kind], minimum)
 
     def of(self, name):
         return self.largest.get(kind_of(name), 0) or 1.0
@@ -119,7 +119,7 @@ def of_numbers(one, other, rename, scales):
     steps = list(zip(one.results["steps"], other.results["steps"]))
     for key in ("inflows", "heat_inflows"):
         size = max((abs(v) for a, _ in steps for v in a.get(key, {}).values()), default=0)
-        worst = max([worst] + [(abs(v - b[key][name]) / max(size, _least(one, scales, key)), f"{key} of {name} at t = {a['time']:g}")
+        worst = max([worst] + [(abs(v - b[key][name]) / max(size, _minimum(one, scales, key)), f"{key} of {name} at t = {a['time']:g}")
                                for a, b in steps for name, v in a.get(key, {}).items()])
     largest_of = {key: max((abs(well.get(key, 0)) for a, _ in steps for well in a.get("wells", {}).values()), default=0)
                   for key in ("rate", "heat")}
@@ -136,7 +136,7 @@ def _own(key, rename):
     return "in " + rename(key[3:]) if key.startswith("in ") and key != "in rock" else key
 
 
-def _least(written, scales, key):
+def _minimum(written, scales, key):
     """Smallest scale of a boundary flow: scale of the flux density times the area of a side."""
     bulk = written.states[0].bulk
     area = bulk.sizes.sum() ** (1 - 1 / bulk.dim)

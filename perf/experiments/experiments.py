@@ -75,12 +75,12 @@ def of_rock(name, columns, fitted, slip, options):
     found = specimen.run(options.binary, options.output / name, specimen.entries(one, shear, wide, dilation, closes))
     width = columns["flow rate"][0][0] / found["flow rate"][0]
     found["flow rate"] = found["flow rate"] * width
-    told = [f"across the plane of the specimen in 2D {1e3 * width:.1f} mm", f"dilation by the flow tan {dilation:.2e}"]
+    reported = [f"across the plane of the specimen in 2D {1e3 * width:.1f} mm", f"dilation by the flow tan {dilation:.2e}"]
     opened, slipped = -columns["normal displacement"][0][RISING], columns["slip"][0][RISING]
     known = np.isfinite(opened) & np.isfinite(slipped)
     if known.sum() > 1:
-        told.append(f"by the normal displacement tan {slipped[known] @ opened[known] / (slipped[known] @ slipped[known]):.2f}")
-    return found, told
+        reported.append(f"by the normal displacement tan {slipped[known] @ opened[known] / (slipped[known] @ slipped[known]):.2f}")
+    return found, reported
 
 
 def rows_of(name, options):
@@ -99,10 +99,10 @@ def rows_of(name, options):
     stages = columns["stage"][0]
     stress, slip = (np.interp(stages, curve["t"], p.computed(curve)) for p in matched)
     flow = flow_of(columns, slip)
-    told = list(fit.told(estimate, [p for _, p in named], comparison, curve))[:len(named)]
+    reported = list(fit.lines_of(estimate, [p for _, p in named], comparison, curve))[:len(named)]
     fitted = {p.name: value for (_, p), value in zip(named, estimate.values)}
     rock, more = of_rock(name, columns, fitted, slip, options)
-    return {"point": in_units(columns, {"shear stress": stress, "slip": slip, "flow rate": flow}), "rock": in_units(columns, rock)}, told + more
+    return {"point": in_units(columns, {"shear stress": stress, "slip": slip, "flow rate": flow}), "rock": in_units(columns, rock)}, reported + more
 
 
 def relative(measured, computed, rows):
@@ -129,8 +129,8 @@ def injection_tests(options, names):
     """Prints fitted parameters and errors. Returns True if the point model fits all rising stages."""
     summary = []
     for name in names:
-        models, told = rows_of(name, options)
-        print(name, *told, sep="\n  ")
+        models, reported = rows_of(name, options)
+        print(name, *reported, sep="\n  ")
         rows = [(model, *row) for model, quantities in models.items() for row in quantities]
         titles = [f"{model}: {q} {kind} ({u})" for model, q, u, _, _ in rows for kind in ("measured", "computed")]
         table.write(options.output / f"{name}.csv", ["stage (-)", *titles],

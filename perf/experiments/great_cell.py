@@ -52,7 +52,7 @@ def computed(options, rock, case, load, size):
     directory = options.output / f"great_cell/{rock}_{case}_{load}_{1e3 * size:g}mm"
     entries = [f"{path}={value}" for path, value in {**own, **CASES[case], "Tables.load.values": pads(load), "Mesh file.network.size": size}.items()]
     mesh = program.mesh(options.binary, SCENE, directory / "cell.msh", entries)
-    program.succeeded(options.binary, SCENE, directory, (f"Mesh file.path={mesh}", *entries), anew=False)
+    program.succeeded(options.binary, SCENE, directory, (f"Mesh file.path={mesh}", *entries), clear=False)
     return 1e4 * strains(directory, size, *elastic)
 
 

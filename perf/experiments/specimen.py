@@ -62,7 +62,7 @@ def entries(specimen, shear, wide, dilation, closes):
 def run(binary, directory, entries):
     """Runs the scene; returns {quantity: values at the stage ends} with the signs of the tables."""
     mesh = program.mesh(binary, SCENE, directory / "specimen.msh", entries)
-    steps = program.succeeded(binary, SCENE, directory, (f"Mesh file.path={mesh}", *entries), anew=False).steps
+    steps = program.succeeded(binary, SCENE, directory, (f"Mesh file.path={mesh}", *entries), clear=False).steps
     ends = [step for step in steps if abs(step["time"] / STAGE - round(step["time"] / STAGE)) < 1e-9]
     cut = [step["fractures"]["cut"] for step in ends]
     traction = np.array([face["mean_traction"]["local"] for face in cut])

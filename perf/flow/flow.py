@@ -67,7 +67,7 @@ class Row:
 
     def values(self):
         run = self.run
-        return [self.series, run.cells, run.system, len(run.krylov), int(run.krylov[0]), int(run.most), first_residual(run), *run.times,
+        return [self.series, run.cells, run.system, len(run.krylov), int(run.krylov[0]), int(run.maximum), first_residual(run), *run.times,
                 run.bytes[0] / 1e3 / max(1, run.cells)]
 
 
@@ -77,7 +77,7 @@ def first_residual(run):
 
 
 def summary(rows):
-    return {"krylov_max": max(row.run.most for row in rows), "krylov_growth": table.growth([(row.series, row.level, row.run.most) for row in rows]),
+    return {"krylov_max": max(row.run.maximum for row in rows), "krylov_growth": table.growth([(row.series, row.level, row.run.maximum) for row in rows]),
             "failures": sum(bool(row.run.failure) for row in rows),
             "exponent": table.exponent([(row.series, row.run.cells, row.run.total_time) for row in rows])}
 
@@ -86,7 +86,7 @@ def draw(rows, file):
     """Draws iterations and seconds against cells: a colour for each cell shape, a line for each case."""
     import style
     figure, both = style.plt.subplots(1, 2, figsize=(8, 3.4))
-    for axes, (label, what) in zip(both, (("Krylov iterations (-)", lambda row: row.run.most), ("set-up, assembly and solution (s)", lambda row: row.run.total_time))):
+    for axes, (label, what) in zip(both, (("Krylov iterations (-)", lambda row: row.run.maximum), ("set-up, assembly and solution (s)", lambda row: row.run.total_time))):
         for colour, mesh in zip(style.LINES, MESHES):
             of_mesh = [row for row in rows if row.mesh == mesh]
             for k, case in enumerate(dict.fromkeys(row.case for row in of_mesh)):

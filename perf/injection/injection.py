@@ -11,8 +11,8 @@ from perf.contact import contact
 from perf.contact.scenes import Scene
 
 END = 20 * 3600.0  # s
-MOST = 25          # target: Newton iterations per step
-ASKED = {"failures": 0, "newton_max": MOST}
+MAXIMUM = 25          # target: Newton iterations per step
+ASKED = {"failures": 0, "newton_max": MAXIMUM}
 CUTS = 0.1         # target: bisections per step of a run
 QUICK = {"failures": 0, "newton_median": 10, "newton_max": 100, "cuts": 4}  # --quick printed 0, 8, 66, 1
 PERMEABILITIES = (1e-20, 1e-17, 1e-15)  # m^2
@@ -64,15 +64,15 @@ def asked(run, steps):
     """Yields messages of missed targets other than failures."""
     if run.cuts > CUTS * steps:
         yield f"{run.cuts} cuts in {steps} steps, required: at most one in ten"
-    if max(run.newton, default=0) > MOST:
-        yield f"{max(run.newton)} Newton iterations in a step, at most {MOST} required"
+    if max(run.newton, default=0) > MAXIMUM:
+        yield f"{max(run.newton)} Newton iterations in a step, at most {MAXIMUM} required"
 
 
 def row(case, solver, steps, run):
     if not run.steps or not run.steps[-1].get("fractures"):
         return [case.name, solver, steps, 0, 0, 0, 0, 0, 0, 0, run.seconds]
     worst = 0 if run.worst is None else float(run.worst.max())
-    return [case.name, solver, steps, len(run.steps), float(np.median(run.newton)), max(run.newton), sum(n > MOST for n in run.newton), run.cuts,
+    return [case.name, solver, steps, len(run.steps), float(np.median(run.newton)), max(run.newton), sum(n > MAXIMUM for n in run.newton), run.cuts,
             run.fraction("open"), worst, run.seconds]
 
 

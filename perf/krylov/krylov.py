@@ -49,7 +49,7 @@ class Row:
     def values(self):
         run = self.run
         return [self.name, self.edge, run.unknowns, *run.fractions, run.mean_newton, run.cuts, len(run.krylov), run.mean,
-                run.most, run.residual, *run.times, run.bytes[0] / 1e3 / max(1, run.unknowns)]
+                run.maximum, run.residual, *run.times, run.bytes[0] / 1e3 / max(1, run.unknowns)]
 
 
 def summary(rows, quick):
@@ -59,7 +59,7 @@ def summary(rows, quick):
 
     def growth(what):
         return table.growth([(row.series, row.edge, what(row.run)) for row in rows], first, last)
-    return {"max_krylov": max(row.run.most for row in rows if quick or row.edge == last), "growth": growth(lambda run: run.mean),
+    return {"max_krylov": max(row.run.maximum for row in rows if quick or row.edge == last), "growth": growth(lambda run: run.mean),
             "newton_growth": growth(lambda run: run.mean_newton),
             "exponent": table.exponent([(row.series, row.run.unknowns, row.run.total_time) for row in rows if row.edge >= first])}
 
@@ -89,7 +89,7 @@ def draw(rows, file):
             x = [row.run.unknowns for row in of]
             ax.plot(x, [what(row) for row in of], label=name, marker="o", markersize=3.5, **look)
             if ax is axes[0]:
-                ax.vlines(x, [row.run.mean for row in of], [row.run.most for row in of], color=look["color"], linewidth=0.8)
+                ax.vlines(x, [row.run.mean for row in of], [row.run.maximum for row in of], color=look["color"], linewidth=0.8)
         ax.set(xscale="log", xlabel="displacement unknowns (-)", title=label)
     for ax in axes[:2]:
         ax.set_ylim(0, 1.05 * ax.get_ylim()[1])

@@ -15,7 +15,7 @@ from perf.networks import networks
 
 BOUNDS = {"newton_median": 6, "newton_max": 15, "worst_violation": 1e-8}  # limits of --quick when it serves as a test
 ASKED = {**BOUNDS, "cost": 1.3, "growth": 0.02}
-KEPT = "elastic-plastic jump: kept by laws"
+HISTORY = "elastic-plastic jump: history of laws"
 COLUMNS = {"law, network": "s", "faces": "d", "steps": "d", "median": ".1f", "max": "d", "cuts": "d", "violation": ".0e", "cost": ".2f",
            "bytes/face": "d", "history +-": ".1e"}
 TURNS, TURN = "point/damage_turns.xml", 64  # steps
@@ -51,8 +51,8 @@ class Measured:
     def history(self):
         """(bytes of history per face, error bound of a history)."""
         blocks, mesh = self.run.results.get("blocks", {}), self.run.results.get("mesh", {})
-        kept = sum(h["bytes"] for h in blocks.get("histories", []) if h["name"] == KEPT)
-        return kept // max(1, mesh.get("fracture_faces", 1)), max(self.run.results.get("error_bounds", {}).values(), default=None)
+        saved = sum(h["bytes"] for h in blocks.get("histories", []) if h["name"] == HISTORY)
+        return saved // max(1, mesh.get("fracture_faces", 1)), max(self.run.results.get("error_bounds", {}).values(), default=None)
 
 
 def scene_with(network, law, directory):
@@ -97,11 +97,11 @@ def growth(options):
     steps.
 
     The first turn is no reference: its few stored directions make steps less expensive."""
-    told = measured_by(options, TURNS, (f"Time.end={LATE / TURN}", f"Time.steps={LATE}"), 1)
+    reported = measured_by(options, TURNS, (f"Time.end={LATE / TURN}", f"Time.steps={LATE}"), 1)
     print("\nanisotropic damage at a point, a path that turns; microseconds of the processor and evaluations of a step:\n" +
-          "\n".join(f"  {words:<28}{1e6 * told[turn]['seconds']:6.2f}{told[turn]['evaluations']:7.2f}" for turn, words in (
+          "\n".join(f"  {words:<28}{1e6 * reported[turn]['seconds']:6.2f}{reported[turn]['evaluations']:7.2f}" for turn, words in (
               ("first", "the turn after step 10"), ("second", f"the turn after step {10 + TURN}"), ("late", f"turns after step {LATE}"))), flush=True)
-    return told["late"]["seconds"] / told["second"]["seconds"] - 1
+    return reported["late"]["seconds"] / reported["second"]["seconds"] - 1
 
 
 def main(arguments):

@@ -20,9 +20,9 @@ def row(name, found):
     """Table row. Memory is the peak of a process minus its memory before the mesh; the cells of a rank include
     ghosts."""
     extra = [1e-6 * (peak - before) for peak, before in zip(found["peak_bytes"], found["peak_bytes_before"])]
-    most = int(max(found["local_cells"]))
+    maximum = int(max(found["local_cells"]))
     seconds = found["seconds_to_distribute"] + found["seconds_to_refine"]
-    return [name, 1e-6 * found["cells"], 1e-6 * found["nodes"], 1e-6 * most, seconds, extra[0], max(extra[1:], default=None), 1e6 * max(extra) / most]
+    return [name, 1e-6 * found["cells"], 1e-6 * found["nodes"], 1e-6 * maximum, seconds, extra[0], max(extra[1:], default=None), 1e6 * max(extra) / maximum]
 
 
 def main(words):

@@ -32,7 +32,7 @@ class Budget:
     heat: np.ndarray
     late: np.ndarray   # heat by tractions at step ends minus heat by mean tractions
     balance: float    # largest sum of forces or moments
-    least_heat: float  # smallest lambda_t . du^p of a face in a step, relative to the largest
+    min_heat: float  # smallest lambda_t . du^p of a face in a step, relative to the largest
 
     @property
     def defect(self):
@@ -126,12 +126,12 @@ def joints(directory, results, box):
     areas = face_areas(directory, box)
     taken, stored, heat, late, shares = [0], [0], [0], [0], []
     slip, shear_before = np.zeros_like(steps[0].plastic), 0
-    for step, told in zip(steps, results["steps"]):
+    for step, reported in zip(steps, results["steps"]):
         shear, normal = step.traction[:, 1:], step.traction[:, 0]
         increment = step.plastic[:, 1:] - slip[:, 1:]
         share = areas * (shear * increment).sum(axis=1)
         # with several substeps, no single traction belongs to the increment
-        shares.append(share if told["substeps"] == 1 else np.zeros(1))
+        shares.append(share if reported["substeps"] == 1 else np.zeros(1))
         lift, of = np.zeros(len(areas)), np.zeros(len(areas))
         for k, joint in enumerate(box.input.joints):
             on = step.fracture == k
@@ -142,8 +142,8 @@ def joints(directory, results, box):
         taken.append((areas[:, None] * step.traction * step.jump).sum())
         late.append(late[-1] + (areas * ((shear - shear_before) * increment).sum(axis=1)).sum() / 2)
         slip, shear_before = step.plastic, shear
-    least, most = min(s.min() for s in shares), max(s.max() for s in shares)
-    return *map(np.array, (taken, stored, heat, late)), least / most if most > 0 else 0
+    minimum, maximum = min(s.min() for s in shares), max(s.max() for s in shares)
+    return *map(np.array, (taken, stored, heat, late)), minimum / maximum if maximum > 0 else 0
 
 
 def closure_energy(joint, load):
@@ -167,6 +167,6 @@ def face_areas(directory, box):
 def budget(directory, results):
     box = Box(directory, results)
     (work, on_displacement), forces, moments, largest = loads(box)
-    taken, stored, heat, late, least = joints(directory, results, box)
+    taken, stored, heat, late, minimum = joints(directory, results, box)
     balance = max(np.abs(forces).max() / largest, np.abs(moments).max() / (largest * box.size))
-    return Budget(work, (on_displacement - taken) / 2, stored, heat, late, balance, least)
+    return Budget(work, (on_displacement - taken) / 2, stored, heat, late, balance, minimum)

@@ -17,7 +17,7 @@ TIME_LIMIT = 3600  # CPU seconds per run
 STEPS = 11           # steps of the scenes: one of compression, ten of shear
 REFINED = (1, 2, 4, 8)  # refinement factors of the steps for the energy defect
 BOUNDS = {"newton_median": 6, "newton_max": 12, "balance": 1e-8}
-LEAST_HEAT = -1e-10  # of a face in a step, relative to the largest
+MIN_HEAT = -1e-10  # of a face in a step, relative to the largest
 ORDER = 0.8          # lower bound on the order of the energy defect in the step size; 1 is expected
 COLUMNS = {"network": "s", "dim": "d", "fractures": "d", "faces": "d", "unknowns": "d", "steps": "d", "median": ".1f", "max": "d",
            "cuts": "d", "slip": ".0%", "open": ".1%", "balance": ".0e", "violation": ".0e", "heat": ".0e", "seconds": ".0f"}
@@ -81,8 +81,8 @@ def judge(run):
         run.directory, run.results, violation.Input(run.directory / "effective_input.xml"))
     if run.budget.balance > BOUNDS["balance"]:
         run.failures.append(f"forces or moments are out of balance by {run.budget.balance:.1e} of the largest reaction")
-    if run.budget.least_heat < LEAST_HEAT:
-        run.failures.append(f"lambda_t . du^p is negative: {run.budget.least_heat:.1e} of the largest")
+    if run.budget.min_heat < MIN_HEAT:
+        run.failures.append(f"lambda_t . du^p is negative: {run.budget.min_heat:.1e} of the largest")
     if run.worst.max() > contact.BOUNDS["worst_violation"]:
         run.failures.append(f"the laws are violated by {run.worst.max():.1e}")
 
@@ -105,7 +105,7 @@ def measured(options, network, table):
     mesh = run.results.get("mesh", {})
     table.add([network.name, mesh.get("dimension"), fractures, mesh.get("fracture_faces"), run.unknowns,
                len(run.steps), float(np.median(run.newton)) if run.newton else None, max(run.newton, default=None), run.cuts,
-               run.fraction("slip"), run.fraction("open"), *([run.budget.balance, float(run.worst.max()), run.budget.least_heat]
+               run.fraction("slip"), run.fraction("open"), *([run.budget.balance, float(run.worst.max()), run.budget.min_heat]
                                                               if run.budget else [None] * 3), run.seconds], [*run.failures, *notes])
     return run
 

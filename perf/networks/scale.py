@@ -95,7 +95,7 @@ class Row:
     def values(self):
         run, (seconds, size, _) = self.run, self.cost
         return [self.name, self.fractures, run.unknowns, self.tips, *run.fractions, float(np.median(run.newton)),
-                max(run.newton), run.cuts, len(run.krylov), run.mean, run.most_used, run.residual,
+                max(run.newton), run.cuts, len(run.krylov), run.mean, run.max_used, run.residual,
                 *run.times, 1e6 * seconds, size / 1e3]
 
 
@@ -131,7 +131,7 @@ def summary(networks, beside):
     both = [(row, beside[scale.name]) for scale, row in networks if scale.name in beside and not beside[scale.name].run.failure]
     ratio = [max((row.cost[k] / other.cost[k] for row, other in both), default=math.nan) for k in range(3)]
     of_size = [(math.log(row.fractures), math.log(row.seconds)) for scale, row in networks if scale.dim == 3 and not scale.flow]
-    return {"krylov_max": max((row.run.most_used for _, row in networks), default=math.nan), "newton_median": float(np.median(newton or [math.nan])),
+    return {"krylov_max": max((row.run.max_used for _, row in networks), default=math.nan), "newton_median": float(np.median(newton or [math.nan])),
             "newton_max": max(newton, default=math.nan), "seconds_over_blocks": ratio[0], "bytes_over_blocks": ratio[1],
             "with_tips": ratio[2],
             "exponent": float(np.polyfit(*zip(*of_size), 1)[0]) if len(of_size) > 1 else math.nan}

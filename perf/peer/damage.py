@@ -14,18 +14,18 @@ COLUMNS = {"apart": "", "normal": ".0e", "shear": ".0e", "slip": ".0e", "first s
 WITHIN = 1e-9     # allowed difference of tractions and slips, relative to the largest
 
 
-def entries(told, dim):
+def entries(reported, dim):
     """Scene entries for the jumps of PorePy's run, with the normal component first."""
-    jumps = np.array(told["path"])[[1, 0, 2][:dim]]
+    jumps = np.array(reported["path"])[[1, 0, 2][:dim]]
     times = ", ".join(map(str, range(jumps.shape[1])))
     sets = [f"Tables.jump{i}.{what}={{{values}}}" for i, row in enumerate(jumps)
             for what, values in (("arguments", times), ("values", ", ".join(map(repr, row.tolist()))))]
     return [*sets, "Point.control={" + ", ".join(["jump"] * dim) + "}", "Point.path={" + ", ".join(f"jump{i}(t)" for i in range(dim)) + "}"]
 
 
-def ours(options, dim, kind, told):
+def ours(options, dim, kind, reported):
     """Runs Sprekk; returns {quantity: values of all steps}."""
-    sets = [f"Materials.joint.damage={kind}", f"Time.end={STEPS}", f"Time.steps={STEPS}", *entries(told, dim)]
+    sets = [f"Materials.joint.damage={kind}", f"Time.end={STEPS}", f"Time.steps={STEPS}", *entries(reported, dim)]
     rows = list(csv.DictReader(io.StringIO(program.checked([options.binary, "point", SCENE, *program.sets(sets)]))))[1:]
     shear = ["t"] if dim == 2 else ["t1", "t2"]
 
@@ -39,8 +39,8 @@ def compare(options, theirs):
     printed, wrong = table.Table(COLUMNS, 24), []
     for dim in (2, 3):
         for kind in ("isotropic", "anisotropic"):
-            told, _ = theirs(options, "damage.py", dim, kind, STEPS)
-            their, our = told["steps"], ours(options, dim, kind, told)
+            reported, _ = theirs(options, "damage.py", dim, kind, STEPS)
+            their, our = reported["steps"], ours(options, dim, kind, reported)
             apart = {name: np.max(abs(values - [step[name] for step in their])) / np.max(abs(values)) for name, values in our.items()}
             seconds = np.diff([0, *(step["seconds"] for step in their)])
             solves = np.diff([0, *(step["solves"] for step in their)])

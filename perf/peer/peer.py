@@ -47,8 +47,8 @@ def theirs(options, script, *words):
     one = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "PYTHONDONTWRITEBYTECODE")}
     environment = {**one, "PYTHONPATH": ":".join(map(str, paths)), "MPLBACKEND": "Agg", "PYTHONWARNINGS": "ignore",
                    "NUMBA_CACHE_DIR": str(options.output / "numba")}
-    told = json.loads(checked(["env", "-C", options.output, sys.executable, theirs / script, *words], **environment).strip().splitlines()[-1])
-    return told, lambda values: Run("PorePy", told["cells"], told["unknowns"], told["solves"], told["cpu_seconds"], told["peak_bytes"], values)
+    reported = json.loads(checked(["env", "-C", options.output, sys.executable, theirs / script, *words], **environment).strip().splitlines()[-1])
+    return reported, lambda values: Run("PorePy", reported["cells"], reported["unknowns"], reported["solves"], reported["cpu_seconds"], reported["peak_bytes"], values)
 
 
 def flat(functionals):
@@ -88,9 +88,9 @@ def compare_tilted(options, count):
     printed, found = table.Table(COLUMNS, 26), {"PorePy": [], "Sprekk": [], "Sprekk, plain tips": []}
     for h, on_crack in TILTED[:count]:
         made = options.output / f"porepy_{h:g}.msh"
-        told, run = theirs(options, "tilted.py", h, on_crack, made.resolve())
+        reported, run = theirs(options, "tilted.py", h, on_crack, made.resolve())
         file = named(made, options.output / f"tilted_{h:g}.msh")
-        found["PorePy"].append(run(flat(told["functionals"])))
+        found["PorePy"].append(run(flat(reported["functionals"])))
         found["Sprekk"].append(ours.tilted(options, file, f"tilted_{h:g}"))
         found["Sprekk, plain tips"].append(ours.tilted(options, file, f"plain_{h:g}", "Mesh file.tips=plain"))
         for code, of in found.items():
@@ -103,8 +103,8 @@ def compare_heat(options, count):
     printed, found = table.Table(OF_HEAT, 26), {"PorePy": [], "Sprekk": []}
     for h, on_crack in HEAT[:count]:
         made = options.output / f"porepy_thm_{h:g}.msh"
-        told, run = theirs(options, "thm.py", h, on_crack, made.resolve())
-        found["PorePy"].append(run(told["functionals"]))
+        reported, run = theirs(options, "thm.py", h, on_crack, made.resolve())
+        found["PorePy"].append(run(reported["functionals"]))
         found["Sprekk"].append(ours.thm(options, named(made, options.output / f"thm_{h:g}.msh"), f"thm_{h:g}"))
         for code, of in found.items():
             printed.add([f"{of[-1].cells}, {code}", *cells(of[-1]), *(of[-1].values[name] for name in THERMAL)])
@@ -126,8 +126,8 @@ def compare_errors(options, same, count):
     for mode in ours.MODES:
         both = {"PorePy": [], "Sprekk": []}
         for h in CRACK[:count + 1]:
-            told, run = theirs(options, "crack.py", mode, h, (options.output / "porepy_crack.msh").resolve())
-            both["PorePy"].append(run({mode: told["error"], f"{mode}, tips left out": told["error_away"]}))
+            reported, run = theirs(options, "crack.py", mode, h, (options.output / "porepy_crack.msh").resolve())
+            both["PorePy"].append(run({mode: reported["error"], f"{mode}, tips left out": reported["error_away"]}))
         for k, (h, ratio) in enumerate(GRADED[:count + 1]):
             file = meshes.graded_crack(options.output / "meshes", h, ratio)
             both["Sprekk"].append(ours.crack(options, mode, file, f"{mode}_{k}", "Mesh file.order=2"))
@@ -154,8 +154,8 @@ def compare_flow(options, count):
         for scheme, cell in (("mpfa", "triangle"), ("tpfa", "quadrilateral")):
             their, our = [], [ours.flow(options, kind, cell, n) for n in FLOW["Sprekk"][:count + 1]]
             for h in FLOW["PorePy"][:count + 1]:
-                told, run = theirs(options, "flow.py", kind, scheme, h, (options.output / "porepy_flow.msh").resolve())
-                their.append(run({ours.MEAN: told["mean"]}))
+                reported, run = theirs(options, "flow.py", kind, scheme, h, (options.output / "porepy_flow.msh").resolve())
+                their.append(run({ours.MEAN: reported["mean"]}))
             coarse, fine = (run.values[ours.MEAN] for run in our[-2:])
             exact = fine + (fine - coarse) / 3
             what = f"{kind}, {scheme} beside {'rt0' if cell == 'triangle' else 'tpfa'}"

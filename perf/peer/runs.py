@@ -35,12 +35,12 @@ def apart(ours, theirs):
              for name in ours[k].values} for k in range(len(ours))]
 
 
-def cheapest(runs, error, most):
-    """Returns the first run, from coarse to fine, such that its error and all later errors are at most `most`;
+def cheapest(runs, error, maximum):
+    """Returns the first run, from coarse to fine, such that its error and all later errors are at most `maximum`;
     None if the last error is larger."""
     good = None
     for run in reversed(runs):
-        if error(run) > most:
+        if error(run) > maximum:
             break
         good = run
     return good

@@ -69,8 +69,8 @@ class Row:
 
     def values(self):
         run = self.run
-        return [f"{self.mesh}, {self.case}", run.cells, run.system, run.fraction("slip"), run.fraction("open"), run.cuts, round(self.newton), int(run.most_used), run.mean,
-                int(run.most_given_up), run.residual, *run.times, run.bytes[0] / 1e3 / run.system]
+        return [f"{self.mesh}, {self.case}", run.cells, run.system, run.fraction("slip"), run.fraction("open"), run.cuts, round(self.newton), int(run.max_used), run.mean,
+                int(run.max_given_up), run.residual, *run.times, run.bytes[0] / 1e3 / run.system]
 
 
 def summary(rows):
@@ -78,7 +78,7 @@ def summary(rows):
 
     def growth(what):
         return table.growth([(row.mesh, row.level, what(row)) for row in series])
-    return {"krylov_max": max(row.run.most_used for row in rows), "krylov_given_up": max(row.run.most_given_up for row in rows),
+    return {"krylov_max": max(row.run.max_used for row in rows), "krylov_given_up": max(row.run.max_given_up for row in rows),
             "krylov_growth": growth(lambda row: row.run.mean), "newton_max": max((row.newton for row in series), default=math.nan),
             "newton_growth": growth(lambda row: row.newton), "exponent": table.exponent([(row.mesh, row.run.system, row.seconds) for row in series]),
             "failures": sum(bool(row.run.failure) for row in rows)}
@@ -91,7 +91,7 @@ def draw(study, rows, file):
     if not rows:
         return
     figure, three = style.plt.subplots(1, 3, figsize=(10, 3.2))
-    for axes, (label, what) in zip(three, (("Krylov iterations, most (-)", lambda row: row.run.most_used), ("Newton iterations, most of a step (-)", lambda row: row.newton),
+    for axes, (label, what) in zip(three, (("Krylov iterations, most (-)", lambda row: row.run.max_used), ("Newton iterations, most of a step (-)", lambda row: row.newton),
                                            ("seconds per Newton iteration (s)", lambda row: row.seconds))):
         for colour, mesh in zip(style.LINES, study.levels):
             of = [row for row in rows if row.mesh == mesh]

@@ -89,7 +89,7 @@ class Row:
 
     def values(self):
         run, results = self.run, self.run.results
-        return [self.case.name, self.case.size, run.unknowns, run.unknowns // self.case.ranks, run.mean_newton, run.mean, run.most, run.residual,
+        return [self.case.name, self.case.size, run.unknowns, run.unknowns // self.case.ranks, run.mean_newton, run.mean, run.maximum, run.residual,
                 self.halo / 1e3, self.of_fields("halo_messages"), results.get("timing", {}).get("ghost_exchange", {}).get("count", 0), results["partition"]["cut_edges"],
                 self.cycle.get("levels"), *(self.cycle.get(what, [None])[-1] for what in ("unknowns_of_levels", "ranks_of_levels")), self.cycle.get("messages_largest_rank"),
                 self.cycle.get("message_bytes_largest_rank", 0) / 1e3, run.bytes[0] / 1e6, run.bytes[1] / 1e6, *run.times]
@@ -114,12 +114,12 @@ def model(rows, unknowns=UNKNOWNS, machine=Machine()):
     last level grows with the number of ranks: each contributes one node. One rank solves it with factors of a
     space-filling graph, 30 n^(4/3) numbers."""
     row = max((row for row in rows if row.case.series == "weak" and row.cycle), key=lambda row: row.case.ranks)
-    cycle, own, most = row.cycle, row.run.unknowns / row.case.ranks, row.case.ranks
+    cycle, own, maximum = row.cycle, row.run.unknowns / row.case.ranks, row.case.ranks
     more, levels = unknowns / own, cycle["levels"]
     matrix = 8 * 45  # bytes per unknown of a matrix-vector product
     for ranks in (100, 1000, 10000, 100000):
-        deeper = levels + math.log(more * ranks / most, 20)
-        last = cycle["unknowns_of_levels"][-1] / most * ranks
+        deeper = levels + math.log(more * ranks / maximum, 20)
+        last = cycle["unknowns_of_levels"][-1] / maximum * ranks
         yield ranks, {"memory": unknowns * (cycle["cycle_bytes_largest_rank"] / own + matrix) / machine.memory,
                       "messages": cycle["messages_largest_rank"] * deeper / levels * machine.latency,
                       "their bytes": cycle["message_bytes_largest_rank"] * more ** (2 / 3) / machine.network,
@@ -135,14 +135,14 @@ def predict(kind, rows):
         print(f"{ranks:>9}{UNKNOWNS * ranks:>12.0e}" + "".join(f"{1e3 * value:>16.3g}" for value in (*parts.values(), total)) + f"{parts['memory'] / total:>12.2f}")
 
 
-def summary(rows, most):
+def summary(rows, maximum):
     """Summary of blocks or networks; missing values are NaN."""
     by = {(row.case.series, row.case.ranks): row for row in rows}
-    one, many = by.get(("strong", 1)), by.get(("strong", most))
+    one, many = by.get(("strong", 1)), by.get(("strong", maximum))
     weak = sorted((row for row in rows if row.case.series == "weak"), key=lambda row: row.case.ranks)
-    least = [min((row.run.total_time for row in rows if (row.case.series, row.case.ranks) == ("timed", ranks)), default=float("nan")) for ranks in (1, 2)]
-    return {"speedup2": least[0] / least[1],
-            f"growth{most}": many.run.mean / one.run.mean - 1 if one and many else float("nan"),
+    minimum = [min((row.run.total_time for row in rows if (row.case.series, row.case.ranks) == ("timed", ranks)), default=float("nan")) for ranks in (1, 2)]
+    return {"speedup2": minimum[0] / minimum[1],
+            f"growth{maximum}": many.run.mean / one.run.mean - 1 if one and many else float("nan"),
             "growth64": weak[-1].run.mean / weak[0].run.mean - 1 if len(weak) > 1 and weak[-1].case.ranks == 64 else float("nan")}
 
 
@@ -162,7 +162,7 @@ def draw(rows, file):
             ax.plot(x, [what(row) for row in of], "o-", color=style.LINES[k], markersize=4,
                     label=f"{kind}, " + " to ".join(f"{n:,}" for n in sorted({of[0].run.unknowns, of[-1].run.unknowns})) + " unknowns")
             if ax is axes[0]:
-                ax.vlines(x, [row.run.mean for row in of], [row.run.most for row in of], color=style.LINES[k], linewidth=0.8)
+                ax.vlines(x, [row.run.mean for row in of], [row.run.maximum for row in of], color=style.LINES[k], linewidth=0.8)
         ticks = sorted({row.case.ranks for row in rows})
         ax.set(xscale="log", xlabel="ranks (-)", title=label)
         ax.set_xticks(ticks, ticks)
@@ -195,9 +195,9 @@ def main(words):
         scene, sets = case.scene(options)
         run = linear.run(options, sets, case.directory, case.ranks, scene=scene)
         rows.run(case.name, run, Row(case, run))
-    most = max(case.ranks for case in cases(options) if case.series == "strong")
-    bounds = {f"{name}_{kind}": bound for kind in KINDS for name, bound in {**BOUNDS, f"growth{most}": BOUNDS["growth16"]}.items()
-              if name in ("speedup2", f"growth{most}", "growth64")}
+    maximum = max(case.ranks for case in cases(options) if case.series == "strong")
+    bounds = {f"{name}_{kind}": bound for kind in KINDS for name, bound in {**BOUNDS, f"growth{maximum}": BOUNDS["growth16"]}.items()
+              if name in ("speedup2", f"growth{maximum}", "growth64")}
 
     def total(rows):
         values = {}
@@ -205,6 +205,6 @@ def main(words):
             of_kind = [row for row in rows if row.case.kind == kind]
             if options.model and any(row.case.series == "weak" and row.cycle for row in of_kind):
                 predict(kind, of_kind)
-            values |= {f"{name}_{kind}": value for name, value in summary(of_kind, most).items()}
+            values |= {f"{name}_{kind}": value for name, value in summary(of_kind, maximum).items()}
         return values
     return rows.finish(options, total, {name: ".2f" for name in bounds}, draw, bounds)

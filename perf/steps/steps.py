@@ -198,8 +198,8 @@ def main(words):
     means = {name: float(np.exp(np.mean(np.log(of)))) for name, of in costs.items()}
     cost = max(means.values())
     wrong = [f"missed: {name}: error {max(of):.2f} times the tolerance" for name, of in misses.items() if max(of) > BOUNDS["worst_miss"]]
-    most = QUICK_COST if options.quick else BOUNDS["cost"]
-    wrong += [f"missed: {name}: cost {mean:.2f} of equal steps" for name, mean in means.items() if mean > most]
+    maximum = QUICK_COST if options.quick else BOUNDS["cost"]
+    wrong += [f"missed: {name}: cost {mean:.2f} of equal steps" for name, mean in means.items() if mean > maximum]
     print("\n".join(["", f"steps.csv and steps.png in {options.output}", *failed, *wrong]))
     print(f"failures={len(failed)} worst_miss={worst:.2f} cost={cost:.2f}")
     return 1 if failed or (options.quick and wrong) else 0

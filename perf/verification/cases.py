@@ -34,17 +34,17 @@ class Bound:
     series: str
     mesh: str
     error: str
-    most: float
+    maximum: float
     unknowns: float = math.inf
 
 
 @dataclass
 class Order:
-    """Lower bound `least` on the observed order between the last two meshes of each series whose name contains
+    """Lower bound `minimum` on the observed order between the last two meshes of each series whose name contains
     `series`."""
     series: str
     error: str
-    least: float
+    minimum: float
 
 
 @dataclass
@@ -184,7 +184,7 @@ def manufactured(dimension, cells):
             series.append(Series(f"{regime} {shape} {order}", grids, f"verification/manufactured_{regime}_{dimension}d.xml", sets,
                                  exact.Manufactured(dimension, regime), quick))
     shape = "triangle" if dimension == 2 else "tetrahedron"
-    bounds = [Order(one.name, name, least) for one in series for name, least in (("jump", 1.5), ("traction", 1))]
+    bounds = [Order(one.name, name, minimum) for one in series for name, minimum in (("jump", 1.5), ("traction", 1))]
     bounds += [Order(one.name, "u", 3 if one.name.startswith("uniform") and one.name.endswith("2") else 2) for one in series]
     bounds += [Order(one.name, "centre", 2) for one in series if one.name.endswith("2")]
     bounds.append(Bound(f"mixed {shape} 2", f"n={cells[shape, 2][-1]}", "u", 1e-4 if dimension == 2 else 5e-4))

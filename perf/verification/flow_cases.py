@@ -37,7 +37,7 @@ def all_errors(run, exact):
 def manufactured(d, counts, quick):
     series = [Series(f"{kind} {name}", boxes(d, counts), f"verification/flow_{kind}_{d}d.xml", sets, flow_exact.Manufactured(d, kind == "resistance"), quick)
               for kind in ("resistance", "continuous") for name, sets in shapes(d).items()]
-    bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 2), ("in fracture", 2), ("velocity", 1), ("flow", 1))]
+    bounds = [Order(one.name, name, minimum) for one in series for name, minimum in (("pressure", 2), ("in fracture", 2), ("velocity", 1), ("flow", 1))]
     return case(f"mms_flow{d}d", f"manufactured solution of flow in {d}D, across and along a fracture", series, all_errors,
                 (series[0].name, f"n={counts[-1]}", "pressure"), bounds, CALLED)
 
@@ -73,7 +73,7 @@ def flow_conductor():
         middle = np.argsort(np.abs(places[:, 0]))[:2]
         return {**all_errors(run, known), "centre": abs(np.mean(along[middle] / known.flow_in(places[middle])[:, 0]) - 1)}
     series = around("conductor", "T0", (1, 10, 1e6, 1e10), flow_exact.Conductor, "verification/flow_conductor.xml")
-    bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 1), ("velocity", 0.5), ("flow", 1), ("centre", 1))]
+    bounds = [Order(one.name, name, minimum) for one in series for name, minimum in (("pressure", 1), ("velocity", 0.5), ("flow", 1), ("centre", 1))]
     bounds += [Bound(one.name, FINEST, "centre", 2e-3) for one in series]
     return case("flow_conductor", "flow along a fracture in an infinite plane", series, errors, ("T0=1 graded mesh", FINEST, "pressure"), bounds, CALLED)
 
@@ -93,7 +93,7 @@ def flow_barrier():
         return {**flow_measure.rock_errors(run, known), "jump": flow_measure.relative((high - low - jump)[:, None], jump[:, None], size),
                 "leakage": abs((size * leaks).sum() / size.sum() / known.leakage - 1), "at faces": float(np.max(np.abs(leaks / known.leakage - 1)))}
     series = around("barrier", "c0", (1, 1e-6, 1e-10), flow_exact.Barrier, "verification/flow_barrier.xml")
-    bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 1), ("velocity", 0.5))]
+    bounds = [Order(one.name, name, minimum) for one in series for name, minimum in (("pressure", 1), ("velocity", 0.5))]
     bounds += [Order("graded", name, 1) for name in ("jump", "leakage")] + [Order("U", name, 0.75) for name in ("jump", "leakage")]
     bounds += [Bound(one.name, FINEST, "leakage", 2e-3) for one in series]
     # positive everywhere
@@ -110,8 +110,8 @@ def flow_well(d, counts):
     rock = {1: (), 4: (f"Materials.rock.permeability={{4, 1{', 1' * (d - 2)}}}", f"Tables.a.values={{{2**0.5!r}, {2**0.5!r}}}")}
     series = [Series(f"{name} {ratio}:1", boxes(d, counts), f"verification/flow_well_{d}d.xml", (*sets, *rock[ratio]), None, 2)
               for ratio in rock for name, sets in shapes(d).items()]
-    most = {"rt0 triangle": 0.02, "rt0 tetrahedron": 0.03, "mimetic": 0.02}
-    bounds = [Bound(one.name, label, "in well", value) for one in series for label, _ in one.meshes for start, value in most.items() if one.name.startswith(start)]
+    maximum = {"rt0 triangle": 0.02, "rt0 tetrahedron": 0.03, "mimetic": 0.02}
+    bounds = [Bound(one.name, label, "in well", value) for one in series for label, _ in one.meshes for start, value in maximum.items() if one.name.startswith(start)]
     bounds += [Order(one.name, "in well", 1.5) for one in series if "tpfa" in one.name]
     return case(f"flow_well{d}d", f"a well in {d}D", series, errors, (series[0].name, f"n={counts[-1]}", "in well"), bounds)
 
@@ -216,12 +216,12 @@ def draw_lines(series, file):
     style.plt.close(figure)
 
 
-def benchmark(name, title, series, most, headline, banded=False):
+def benchmark(name, title, series, maximum, headline, banded=False):
     """Case of a published benchmark.
 
-    `most` = {beginning of a series name: bounds on the difference for the last mesh of --quick and the last
+    `maximum` = {beginning of a series name: bounds on the difference for the last mesh of --quick and the last
     mesh}. With `banded`, all points of the last mesh must lie in the band."""
-    bounds = [Bound(one.name, label, "line", value) for one in series for start, values in most.items() if one.name.startswith(start)
+    bounds = [Bound(one.name, label, "line", value) for one in series for start, values in maximum.items() if one.name.startswith(start)
               for label, value in zip((one.meshes[one.quick - 1][0], one.meshes[-1][0]), values)]
     if banded:
         bounds += [Bound(one.name, one.meshes[-1][0], "outside", 0) for one in series]
@@ -275,8 +275,8 @@ def flow_regular3d():
         line = Line(f"regular 3D {kind}", (0, 0, 0), (1, 1, 1), None, (7,) if entries else ())
         series += [Series(f"{kind} {name}", boxes(3, (8, 16, 32)), "verification/flow_regular_3d.xml", (*sets, *entries), Lines(tight, line), quick)
                    for (name, sets), quick in zip(shapes(3).items(), (1, 2, 0)) if quick]
-    most = {"conductive rt0": (0.3, 2e-2), "conductive tpfa": (0.1, 2e-2), "blocking rt0": (0.1, 1e-2), "blocking tpfa": (0.04, 1e-2)}
-    return benchmark("flow_regular3d", "regular network in 3D, conductive and blocking", series, most, ("conductive tpfa hexahedron", "n=32", "line"), True)
+    maximum = {"conductive rt0": (0.3, 2e-2), "conductive tpfa": (0.1, 2e-2), "blocking rt0": (0.1, 1e-2), "blocking tpfa": (0.04, 1e-2)}
+    return benchmark("flow_regular3d", "regular network in 3D, conductive and blocking", series, maximum, ("conductive tpfa hexahedron", "n=32", "line"), True)
 
 
 CASES = (mms_flow2d, mms_flow3d, flow_conductor, flow_barrier, flow_patch, flow_well2d, flow_well3d, flow_regular2d, flow_hydrocoin, flow_single, flow_regular3d)

@@ -32,18 +32,18 @@ class Conductor(Potential):
     scale = 1  # scale of pressures in the fracture, which may almost vanish
 
     def __init__(self, T0):
-        self.T0, self.kept = T0, 2 / (T0 + 2)  # 1 - B without cancellation
+        self.T0, self.share = T0, 2 / (T0 + 2)  # 1 - B without cancellation
 
     @property
     def flow_at_centre(self):
-        return self.T0 * self.kept
+        return self.T0 * self.share
 
     def potential(self, z):
-        r, B = root(z), 1 - self.kept
-        return -self.kept * z - B * r, -self.kept - B * z / r
+        r, B = root(z), 1 - self.share
+        return -self.share * z - B * r, -self.share - B * z / r
 
     def pressure_in(self, points):
-        return -self.kept * points[:, 0]
+        return -self.share * points[:, 0]
 
     def flow_in(self, points):
         along = self.flow_at_centre * np.sqrt(np.maximum(1 - points[:, 0]**2, 0))

@@ -52,10 +52,10 @@ def manufactured_solutions():
                          regions={half: "rock" for half in halves}, fluid={"viscosity": 0.5, "source": source}))
 
 
-def potential(r, kept, along, part):
-    """Expression -kept * along - (1 - kept) * r[part], with the real or imaginary part of sqrt(z^2 - 1) along the
+def potential(r, share, along, part):
+    """Expression -share * along - (1 - share) * r[part], with the real or imaginary part of sqrt(z^2 - 1) along the
     coordinate."""
-    return f"-({kept})*{along} - (1 - ({kept}))*{r[part]}"
+    return f"-({share})*{along} - (1 - ({share}))*{r[part]}"
 
 
 def single_fracture():
@@ -65,8 +65,8 @@ def single_fracture():
     for name, what, joint, along, part in (
             ("conductor", "along", {"initial aperture": 1.0, "tangential permeability": "T0(0)*sqrt(max(1-x^2,0))"}, "x", 0),
             ("barrier", "across", {"initial aperture": 1.0, "tangential permeability": 1e-30, "normal permeability": "c0(0)/sqrt(max(1-x^2,1e-12))"}, "y", 1)):
-        parameter, kept = (("T0", "2/(T0(0)+2)"), ("c0", "2*c0(0)/(1+2*c0(0))"))[part]
-        content = scene(mesh, {"joint": joint}, {"crack": "joint"}, {"far": {"boundary": "boundary", "pressure": potential(r, kept, along, part)}})
+        parameter, share = (("T0", "2/(T0(0)+2)"), ("c0", "2*c0(0)/(1+2*c0(0))"))[part]
+        content = scene(mesh, {"joint": joint}, {"crack": "joint"}, {"far": {"boundary": "boundary", "pressure": potential(r, share, along, part)}})
         content["Tables"] = {parameter: {"arguments": [0.0, 1.0], "values": [1.0, 1.0]}}
         yield (f"flow_{name}", f"Flow {what} a fracture in an infinite plane. The exact pressure is prescribed on the boundary of the box.", content)
 

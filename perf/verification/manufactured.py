@@ -55,12 +55,12 @@ def beside(dimension, on, leaves, conductivity, side):
     return on * sp.cos(2 * h) + (1 if side == "above" else -1) * leaves / (2 * conductivity) * sp.sin(2 * h)
 
 
-def pressures(dimension, resists, least=sp.Rational(1, 2), most=sp.Rational(-3, 10)):
+def pressures(dimension, resists, minimum=sp.Rational(1, 2), maximum=sp.Rational(-3, 10)):
     """Pressures of flow_exact.Manufactured: in the fracture, on both sides by name, and the inflow to the fracture
     from them."""
     first, y = COORDINATES[0], COORDINATES[1] if dimension == 3 else 0
     f, C = 1 + sp.sin(2 * first + y), 4 + 2 * first
-    entering = {"below": least + sp.cos(first + 2 * y), "above": most + sp.sin(3 * first - y)}
+    entering = {"below": minimum + sp.cos(first + 2 * y), "above": maximum + sp.sin(3 * first - y)}
     sides = {side: beside(dimension, f + g / C * resists, g, 2, side) for side, g in entering.items()}
     return f, sides, entering
 

@@ -61,13 +61,13 @@ class Run:
 
     def unknowns(self, prescribed):
         """Number of unknowns of the linear system, without eliminated blocks and prescribed displacements."""
-        kept = program.Run(results=self.results).system
+        system = program.Run(results=self.results).system
         if prescribed is None:
-            return kept
+            return system
         points, values = vtk_to_numpy(self.rock.GetPoints().GetData()), self.rock.GetPointData().GetArray("displacement")
         if self.results["ranks"] > 1:  # shared nodes occur in every piece; the two sides of a fracture differ
             points = np.unique(np.hstack([points, vtk_to_numpy(values)]), axis=0)
-        return kept - prescribed(points[:, :self.dimension])
+        return system - prescribed(points[:, :self.dimension])
 
     @property
     def seconds(self):

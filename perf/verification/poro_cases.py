@@ -50,7 +50,7 @@ def terzaghi():
         return {"pressure": pressures(run, lambda z: known.pressure(known.H - z, t), up), "settlement": abs(top / known.settlement(t) - 1)}
     series = [Series(f"{cell} order 1", [column(d, n, n * n // 4) for n in ((10, 20, 40) if d == 2 else (5, 10, 20))], f"verification/terzaghi_{d}d.xml",
                      (f"Mesh.cell={cell}",), known, 2) for d in (2, 3) for cell in SHAPES[d]]
-    bounds = [Order(one.name, name, least) for one in series for name, least in (("pressure", 2), ("settlement", 2))]
+    bounds = [Order(one.name, name, minimum) for one in series for name, minimum in (("pressure", 2), ("settlement", 2))]
     bounds += [Bound(one.name, one.meshes[-1][0], "pressure", 5e-3) for one in series]
     return case("terzaghi", "consolidation of a column", series, errors, ("triangle order 1", "n=40", "pressure"), bounds, ("pressure", "settlement"))
 
@@ -130,12 +130,12 @@ def comparison(series):
     return bounds, points
 
 
-def manufactured(d, series, least, headline):
-    """Case; `least` = {series: orders of u and force}. The order of pressures is 2."""
+def manufactured(d, series, minimum, headline):
+    """Case; `minimum` = {series: orders of u and force}. The order of pressures is 2."""
     bounds, points = comparison(series)
     bounds += [Order(one.name, "pressure", 2) for one in series]
     bounds += [Order(one.name, name, IRREGULAR.get(one.name[:-2], 2)) for one in series for name in ("flow", "through")]
-    bounds += [Order(name, *bound) for name, both in least.items() for bound in zip(("u", "force"), both)]
+    bounds += [Order(name, *bound) for name, both in minimum.items() for bound in zip(("u", "force"), both)]
     return Case(f"mms_poro{d}d", f"manufactured solution of poroelasticity in {d}D", "", series, poro_measure.centre_errors, None,
                 (*headline, "u"), None, ("pressure", "u"), None, bounds, points, called=("pressure", "u"))
 
@@ -154,17 +154,17 @@ def mms_poro2d():
     makers = [(f"h={h:g}", lambda folder, h=h: meshes.square(folder, h)) for h in (1 / 4, 1 / 8, 1 / 16, 1 / 32)]
     scene, known = "verification/manufactured_poro_gmsh.xml", poro_exact.Manufactured(2)
     series += [Series(f"triangle gmsh {order}", gmsh(order, *makers), scene, (), known) for order in (1, 2)]
-    least = {"quadrilateral 1": (2, 2), "quadrilateral 2": (2, 2), "triangle 1": (2, 1), "triangle 2": (2.5, 2), "triangle gmsh 1": (2, 1),
+    minimum = {"quadrilateral 1": (2, 2), "quadrilateral 2": (2, 2), "triangle 1": (2, 1), "triangle 2": (2.5, 2), "triangle gmsh 1": (2, 1),
              "triangle gmsh 2": (2.5, 1.5)}
-    return manufactured(2, series, least, ("quadrilateral 2", "n=64"))
+    return manufactured(2, series, minimum, ("quadrilateral 2", "n=64"))
 
 
 def mms_poro3d():
     quick = {("hexahedron", 1): 2, ("tetrahedron", 2): 1}
     every = [(shape, order) for shape in SHAPES[3] for order in (1, 2)]
     series = [made(3, *of, (4, 8, 12, 24) if of == ("hexahedron", 1) else (4, 8, 12), quick.get(of, 0)) for of in every]
-    least = {"hexahedron 1": (2, 1.9), "hexahedron 2": (3, 1.9), "tetrahedron 1": (1.6, 1), "tetrahedron 2": (2.5, 1.5)}
-    return manufactured(3, series, least, ("hexahedron 2", "n=12"))
+    minimum = {"hexahedron 1": (2, 1.9), "hexahedron 2": (3, 1.9), "tetrahedron 1": (1.6, 1), "tetrahedron 2": (2.5, 1.5)}
+    return manufactured(3, series, minimum, ("hexahedron 2", "n=12"))
 
 
 # Time steps

@@ -37,8 +37,8 @@ def opened(d, counts):
         sets, quick = (f"Mesh.cell={cell}", f"Mesh.order={order}"), (cell, order) in (("triangle", 1), ("hexahedron", 1))
         series.append(Series(f"{cell} {order}", grids, f"verification/manufactured_opening_{d}d.xml", sets, poro_exact.Opened(d), 2 * quick))
     fine = 2 if d == 2 else 1.9  # observed on meshes of this size
-    least = {"pressure": 2, "u": 2, "in fracture": fine, "flow": 1, "jump": fine}
-    bounds = [Order(one.name, *bound) for one in series for bound in least.items()]
+    minimum = {"pressure": 2, "u": 2, "in fracture": fine, "flow": 1, "jump": fine}
+    bounds = [Order(one.name, *bound) for one in series for bound in minimum.items()]
     return Case(f"mms_opening{d}d", f"manufactured solution of a fracture opened by fluid pressure in {d}D", "", series, opened_errors, None,
                 (f"{SHAPES[d][0]} 1", f"n={counts[1][-1]}", "pressure"), None, ("pressure", "u"), None, bounds, called=("pressure", "u"))
 
@@ -95,8 +95,8 @@ def joined(name, known, title):
             entries = (f"Mesh.cell={cell}", f"Tables.p.values={numbers(state.path())}", *sets)
             grid = [("n=4", (f"Mesh.cells={numbers([4] * d)}",))]
             series.append(Series(f"{kind} {cell}", grid, f"verification/fluid_{name}_{d}d.xml", entries, state, int((kind, cell) in QUICK)))
-    most = {"slides": 1.1e-6, "opens": 1.1e-6, "traction": 1e-11, "jump": 1e-11}
-    bounds = [Bound(one.name, "n=4", *bound) for one in series for bound in most.items()]
+    maximum = {"slides": 1.1e-6, "opens": 1.1e-6, "traction": 1e-11, "jump": 1e-11}
+    bounds = [Bound(one.name, "n=4", *bound) for one in series for bound in maximum.items()]
     return Case(f"fluid_{name}", title, "", series, joined_errors, None, ("dry triangle", "n=4", "traction"), None, ("", ""), None, bounds,
                 called=("pressure", "traction"))
 
@@ -139,10 +139,10 @@ def crack_volume():
     finest = series[2].meshes[-1][0]
     bounds = [Order(one.name, "pressure", 1) for one in series if one.name[-1] == "1"]
     bounds += [Bound(one.name, label, "volume", 1e-6) for one in series for label, _ in one.meshes]
-    most = {("dry order 1", "h=0.2"): (4e-2, 2e-2), ("undrained order 1", "h=0.2"): (3e-2, 1.2e-2),
+    maximum = {("dry order 1", "h=0.2"): (4e-2, 2e-2), ("undrained order 1", "h=0.2"): (3e-2, 1.2e-2),
             ("dry order 2", "h=0.1"): (2.5e-3, 2.5e-3), ("dry disc order 2", "front 0.1"): (2e-2, 2e-2),
             ("dry graded order 2", finest): (1e-4, 1e-4), ("undrained graded order 2", finest): (6e-4, 1.5e-4)}
-    bounds += [Bound(*of, *bound) for of, both in most.items() for bound in zip(("pressure", "jump"), both)]
+    bounds += [Bound(*of, *bound) for of, both in maximum.items() for bound in zip(("pressure", "jump"), both)]
     return Case("crack_volume", "a crack filled with a given volume of fluid", "", series, volume_errors, None,
                 ("dry graded order 2", finest, "pressure"), None, ("pressure", "jump"), None, bounds, called=("pressure", "jump"))
 

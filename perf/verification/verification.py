@@ -77,15 +77,15 @@ def missed(case, rows, quick):
     for bound in case.bounds:
         if isinstance(bound, cases.Bound):
             of = [row for row in rows if (row.series, row.mesh) == (bound.series, bound.mesh)]
-            wrong += [f"{row.series}, {row.mesh}: {bound.error} {row.errors[bound.error]:.2e}, the bound is {bound.most:g}"
-                      for row in of if not row.errors[bound.error] <= bound.most]
+            wrong += [f"{row.series}, {row.mesh}: {bound.error} {row.errors[bound.error]:.2e}, the bound is {bound.maximum:g}"
+                      for row in of if not row.errors[bound.error] <= bound.maximum]
             wrong += [f"{row.series}, {row.mesh}: {row.unknowns} unknowns, the bound is {bound.unknowns:g}"
                       for row in of if row.unknowns > bound.unknowns]
         else:
             last = {row.series: row for row in rows if bound.series in row.series and bound.error in row.orders}
             of = [row for row in last.values()]
-            wrong += [f"{row.series}, {row.mesh}: order of {bound.error} {row.orders[bound.error]:.2f}, the bound is {bound.least:g}"
-                      for row in of if not row.orders[bound.error] >= bound.least - SLACK * (2 if quick else 1)]
+            wrong += [f"{row.series}, {row.mesh}: order of {bound.error} {row.orders[bound.error]:.2f}, the bound is {bound.minimum:g}"
+                      for row in of if not row.orders[bound.error] >= bound.minimum - SLACK * (2 if quick else 1)]
         judged += len(of)
     for row in rows:
         sure = [name for name in row.effectivity if (row.series, row.mesh, name) not in case.unsure]
@@ -109,7 +109,7 @@ def last_line(case, rows):
 
 
 def effectivities(case, rows):
-    """Summary "CASE jump_estimate=LEAST..MOST stress_estimate=..": ratios of estimated to true errors over all runs."""
+    """Summary "CASE jump_estimate=MINIMUM..MAXIMUM stress_estimate=..": ratios of estimated to true errors over all runs."""
     words = case.name
     for name in ESTIMATES:
         all_of = [row.effectivity[name] for row in rows if name in row.effectivity]

@@ -17,13 +17,13 @@ using mesh::Shape;
 template <int dim>
 struct Faces {
   std::vector<laws::Joint> joints;
-  int n_kept = 0;
+  int n_saved = 0;
   std::vector<Real> history;  // [joint, p_old and history variables]
 
-  int size() const { return dim - 1 + n_kept; }
+  int size() const { return dim - 1 + n_saved; }
 
   Faces(Report& report, const std::string& name, std::vector<laws::Joint> laws) : joints(std::move(laws)) {
-    for (const auto& joint : joints) n_kept = std::max(n_kept, joint.n_history(dim));
+    for (const auto& joint : joints) n_saved = std::max(n_saved, joint.n_history(dim));
     auto& input = report.inputs[name];
     if (!report.has_inputs) {
       Random random(dim);
@@ -34,7 +34,7 @@ struct Faces {
 
  private:
   void add(const laws::Joint& joint, Random& random, std::vector<Real>& all) const {
-    std::vector<Real> before(n_kept, 0), kept(n_kept, 0);
+    std::vector<Real> before(n_saved, 0), saved(n_saved, 0);
     Real p[dim - 1] = {};
     for (int step = 0; step < 8; ++step) {
       Real w[dim], lambda[dim], old[dim - 1];
@@ -46,12 +46,12 @@ struct Faces {
         lambda[i + 1] = random(-4e6, 4e6);
       }
       const auto state = random.chance(0.1) ? laws::ContactState::open : laws::ContactState::slip;
-      before = kept;
+      before = saved;
       const laws::History history{before.data(), 1};
-      joint.commit(laws::converged<dim>(joint, state, w, lambda, p, old, history), {kept.data(), 1});
+      joint.commit(laws::converged<dim>(joint, state, w, lambda, p, old, history), {saved.data(), 1});
     }
     all.insert(all.end(), p, p + dim - 1);
-    all.insert(all.end(), kept.begin(), kept.end());
+    all.insert(all.end(), saved.begin(), saved.end());
   }
 };
 
@@ -62,7 +62,7 @@ struct Face : physics::JointFace<mesh::dimension(shape), mesh::n_face_nodes(shap
 };
 
 /// Computes the history variables of a face after a step that ends at the unknowns.
-template <class Face, int n_kept>
+template <class Face, int n_saved>
 struct Commit {
   static constexpr int dim = Face::dim;
   Face face;
@@ -70,16 +70,16 @@ struct Commit {
   View<Real**> out;  // [face, number]
 
   KOKKOS_INLINE_FUNCTION void operator()(int f) const {
-    Real local[Face::Columns::size], elastic[dim], plastic[dim], p[dim - 1], kept[n_kept];
+    Real local[Face::Columns::size], elastic[dim], plastic[dim], p[dim - 1], saved[n_saved];
     for (int k = 0; k < Face::Columns::size; ++k) local[k] = x(f, k);
     const auto end = face.point(f, local);
     const auto& law = face.points.law[face.points.number(f)];
     laws::split_jump<dim>(law, end.state, end.w, end.traction, end.p_old, elastic, plastic, face.points.history(f));
     for (int i = 0; i < dim - 1; ++i) p[i] = end.state == laws::ContactState::stick ? end.p_old[i] : plastic[i + 1];
-    for (int k = 0; k < n_kept; ++k) kept[k] = face.points.kept(f, k);
+    for (int k = 0; k < n_saved; ++k) saved[k] = face.points.stored_history(f, k);
     law.commit(laws::converged<dim>(law, end.state, end.w, end.traction, p, end.p_old, face.points.history(f)),
-               {kept, 1});
-    for (int k = 0; k < n_kept; ++k) out(f, k) = kept[k];
+               {saved, 1});
+    for (int k = 0; k < n_saved; ++k) out(f, k) = saved[k];
   }
 };
 
@@ -128,7 +128,7 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
     };
   };
   face.points.p_old = filled<Real**>(copy(0), n, dim - 1);
-  if (faces.n_kept > 0) face.points.kept = filled<Real**>(copy(dim - 1), n, faces.n_kept);
+  if (faces.n_saved > 0) face.points.stored_history = filled<Real**>(copy(dim - 1), n, faces.n_saved);
   const auto old = host_of(face.points.p_old);
   const auto frame = host_of(face.points.frame);
   const auto x = filled<Real**>(
@@ -158,16 +158,16 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
 template <Shape shape>
 void add_commit(Report& report, const std::string& name, const Faces<mesh::dimension(shape)>& faces, int n) {
   using Face = device::Face<shape>;
-  constexpr int n_kept = device::n_kept<Face::dim>;  // as in `faces`, which have all laws
+  constexpr int n_saved = device::n_saved<Face::dim>;  // as in `faces`, which have all laws
   const auto made = joint_faces<shape>(faces, n);
-  const Commit<Face, n_kept> commit{made.first, made.second, View<Real**>("out", n, n_kept)};
+  const Commit<Face, n_saved> commit{made.first, made.second, View<Real**>("out", n, n_saved)};
   Kokkos::parallel_for("commit", Kokkos::RangePolicy<Execution>(0, n), commit);
-  const auto kept = host_of(commit.out);
+  const auto saved = host_of(commit.out);
   Case& result = report.cases[name];
   for (int f = 0; f < n; ++f)
-    for (int k = 0; k < n_kept; ++k) {
-      result.value.push_back(kept(f, k));
-      result.scale.push_back(std::max(std::abs(kept(f, k)), 1e-4));
+    for (int k = 0; k < n_saved; ++k) {
+      result.value.push_back(saved(f, k));
+      result.scale.push_back(std::max(std::abs(saved(f, k)), 1e-4));
     }
 }
 

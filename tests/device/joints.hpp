@@ -94,19 +94,19 @@ inline std::vector<laws::Joint> all_joints() {
 }
 
 template <class... Ks>
-constexpr int most_kept(laws::Kinds<Ks...>*, int dim) {
+constexpr int max_history(laws::Kinds<Ks...>*, int dim) {
   return std::max({(dim == 2 ? laws::history_size_2d<Ks> : laws::history_size<Ks>)...});
 }
 template <class Role>
-constexpr int most_kept(int dim = 3) {
-  return most_kept(static_cast<Role*>(nullptr), dim);
+constexpr int max_history(int dim = 3) {
+  return max_history(static_cast<Role*>(nullptr), dim);
 }
 
 /// Largest number of history variables of a face.
 template <int dim>
-constexpr int n_kept =
-    most_kept<laws::DilationKinds>() + most_kept<laws::ClosureKinds>() + most_kept<laws::FrictionKinds>() +
-    most_kept<laws::ShearKinds>() + most_kept<laws::BondKinds>() + most_kept<laws::DamageKinds>(dim);
+constexpr int n_saved =
+    max_history<laws::DilationKinds>() + max_history<laws::ClosureKinds>() + max_history<laws::FrictionKinds>() +
+    max_history<laws::ShearKinds>() + max_history<laws::BondKinds>() + max_history<laws::DamageKinds>(dim);
 
 /// Returns a joint with Coulomb friction, constant dilation angle and hyperbolic closure, as in most scenes.
 inline laws::Joint common_joint() {

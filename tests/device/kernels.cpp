@@ -53,13 +53,13 @@ std::map<std::string, Numbers> read(const std::string& path) {
 
 /// Returns the largest difference relative to the scale; infinite if sizes differ or a value is not finite.
 Real difference(const Numbers& a, const Numbers& b, const Numbers& scale) {
-  Real most = a.size() == b.size() && b.size() == scale.size() ? 0 : HUGE_VAL;
-  for (std::size_t k = 0; k < a.size() && most < HUGE_VAL; ++k) {
+  Real maximum = a.size() == b.size() && b.size() == scale.size() ? 0 : HUGE_VAL;
+  for (std::size_t k = 0; k < a.size() && maximum < HUGE_VAL; ++k) {
     const Real apart = std::abs(a[k] - b[k]);
     if (!(apart <= HUGE_VAL)) return HUGE_VAL;
-    if (apart > 0) most = std::max(most, apart / (scale[k] > 0 ? scale[k] : 1));
+    if (apart > 0) maximum = std::max(maximum, apart / (scale[k] > 0 ? scale[k] : 1));
   }
-  return most;
+  return maximum;
 }
 
 /// Compares and prints all cases; returns whether all differences are within the bound.

@@ -115,14 +115,14 @@ Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
     for (int j = 0; j < K::size; ++j) result.value.push_back(numbers(e, j));
     std::vector<Real> of_rows, of_entries;
     for (int i = 0; i < K::n_rows; ++i) {
-      Real sum = std::abs(numbers(e, i)), most = 0;
+      Real sum = std::abs(numbers(e, i)), maximum = 0;
       const auto J = [&](int k) { return std::abs(numbers(e, K::n_rows + i * K::n_columns + k)); };
       for (int k = 0; k < K::n_columns; ++k) {
         sum += J(k) * std::abs(unknowns(e, k));
-        most = std::max(most, J(k) * unit[k]);
+        maximum = std::max(maximum, J(k) * unit[k]);
       }
       of_rows.push_back(sum);
-      for (int k = 0; k < K::n_columns; ++k) of_entries.push_back(most / unit[k]);
+      for (int k = 0; k < K::n_columns; ++k) of_entries.push_back(maximum / unit[k]);
     }
     for (const auto* part : {&of_rows, &of_entries})
       result.scale.insert(result.scale.end(), part->begin(), part->end());

@@ -192,7 +192,7 @@ def check_reference(root, binary):
     for command, path in (("reference", "docs/use/reference.md"), ("materials", "docs/use/materials.md")):
         printed = subprocess.run([binary, command], stdout=subprocess.PIPE, text=True, check=True).stdout
         if printed != (root / path).read_text():
-            yield f"{path} is out of date; write it anew with ./sprekk {command} > {path}"
+            yield f"{path} is out of date; write it again with ./sprekk {command} > {path}"
 
 
 def check_doxygen(root, folder):

@@ -14,7 +14,7 @@ from description import Network  # noqa: E402
 from plan import Plan  # noqa: E402
 from sizes import Sizes  # noqa: E402
 
-DEFAULTS = {"relative size": 0.3, "growth": 0.5, "minimum angle": 2.0, "size at tips": 0.1, "most cells": 10**6, "regions": {}, "constraints": {}}
+DEFAULTS = {"relative size": 0.3, "growth": 0.5, "minimum angle": 2.0, "size at tips": 0.1, "maximum cells": 10**6, "regions": {}, "constraints": {}}
 SQUARE = {"lower corner": [0.0, 0.0], "upper corner": [1.0, 1.0], "corners": [], "faces": {}, "sides": []}
 CUBE = {**SQUARE, "lower corner": [0.0, 0.0, 0.0], "upper corner": [1.0, 1.0, 1.0]}
 

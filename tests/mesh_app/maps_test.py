@@ -78,11 +78,11 @@ class MapsTest(ProgramTest):
     def test_window_in_a_map(self):
         rows = ["id,x0,y0,x1,y1", "1,0.2,0.2,0.6,0.2", "2,2,0.7,3,0.7", "3,0.5,0.5,1.4,0.5", "4,0.3,0.8,0.30001,0.8"]
         sets = {"traces": {"file": self.file("map.csv", "\n".join(rows))}}
-        told = self.refusal(sets, minimum_distance=1e-3)
+        reported = self.refusal(sets, minimum_distance=1e-3)
         for part in ("line 3): lies outside of the domain", "line 5): is 1e-05 m long, shorter than the \"minimum distance\", 0.001 m",
                      "\"unusable fractures\" = \"left out\""):
-            self.assertIn(part, told)
-        self.assertNotIn("line 4", told)
+            self.assertIn(part, reported)
+        self.assertNotIn("line 4", reported)
         plan = self.plan(sets, minimum_distance=1e-3, **LEFT_OUT)
         self.assertAlmostEqual(length(plan), 0.4 + 0.5, places=12)
         self.assertEqual(sum(line.startswith("left out: fracture") for line in plan.repairs), 2)
@@ -102,9 +102,9 @@ class MapsTest(ProgramTest):
 
     def test_features_without_geometry(self):
         sets = {"traces": {"file": self.geojson([[0.2, 0.5], [0.8, 0.5]], None, [[0.3, 0.3], [0.3, 0.3]])}}
-        told = self.refusal(sets)
+        reported = self.refusal(sets)
         for part in ("feature 2: has no geometry", "feature 3: has 1 different points", "\"unusable fractures\""):
-            self.assertIn(part, told)
+            self.assertIn(part, reported)
         self.assertAlmostEqual(length(self.plan(sets, **LEFT_OUT)), 0.6, places=12)
 
     def test_layers_of_a_drawing(self):
@@ -162,9 +162,9 @@ class MapsTest(ProgramTest):
         path = self.file("scene.xml", scene.replace("{10, 10}", "{1, 1}"))
         words = ["Mesh file.network.unusable fractures=left out", "Mesh file.network.fractures.traces.layers={JOINTS}",
                  "Mesh file.network.fractures.traces.unit=1 mm"]
-        told, _ = self.call("network", path, *(word for one in words for word in ("--set", one)))
+        reported, _ = self.call("network", path, *(word for one in words for word in ("--set", one)))
         for part in ('"unusable fractures" type="string" value="left out"', 'value="{JOINTS}"', 'name="unit" type="double" value="0.001"'):
-            self.assertIn(part, told)
+            self.assertIn(part, reported)
 
 
 

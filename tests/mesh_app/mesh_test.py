@@ -219,7 +219,7 @@ class Polygons(Conformity):
         domain = {**CUBE, "lower corner": [], "upper corner": [], "faces": faces}
         x = np.random.default_rng(1).random((500, 3)) * [2.4, 2.4, 1.4] - 0.2
         inside = (x > 0).all(axis=1) & (x < [2, 2, 1]).all(axis=1) & ((x[:, :2] < 1).any(axis=1))
-        self.assertTrue((network({"a": square_at(2, 0.5)}, domain).domain.holds(x) == inside).all())
+        self.assertTrue((network({"a": square_at(2, 0.5)}, domain).domain.contains(x) == inside).all())
         fracture = [[0.2, 1.8, 0.2], [1.8, 0.2, 0.2], [1.8, 0.2, 0.8], [0.2, 1.8, 0.8]]  # through the inner edge (1, 1)
         level = [[0.5, 0.5, 0.3], [1.8, 0.5, 0.3], [1.8, 1.5, 0.3], [0.5, 1.5, 0.3]]
         self.expect({"a": fracture, "b": level}, {"a": 0.6 * np.hypot(1.6, 1.6), "b": 1.3 - 0.8 * 0.5, "roof": 3}, domain)
@@ -249,10 +249,10 @@ class Refusals(unittest.TestCase):
         with self.assertRaises(NetworkError) as caught:
             plan, mesh = meshed(network(fractures, domain, **entries))
             groups_of(mesh, plan)
-        told = str(caught.exception)
+        reported = str(caught.exception)
         for word in words:
-            self.assertIn(word, told)
-        self.assertEqual(len(told.splitlines()), lines, told)
+            self.assertIn(word, reported)
+        self.assertEqual(len(reported.splitlines()), lines, reported)
 
     def test_lines(self):
         a, both = [[0.2, 0.5], [0.8, 0.5]], ('fracture "a" of "a"', 'fracture "b" of "b"')
@@ -289,9 +289,9 @@ class Refusals(unittest.TestCase):
         """Networks that are too dense are rejected before they need minutes or all memory."""
         import arrange
         fan = {f"f{k}": [[0.1, 0.1 + 0.01 * k], [0.9, 0.9 - 0.01 * k]] for k in range(60)}
-        with mock.patch.object(arrange, "MOST_CROSSINGS", 1000):
+        with mock.patch.object(arrange, "MAX_CROSSINGS", 1000):
             self.refused(fan, "too dense: fractures cross in 1770 points, at most 1000 are allowed", tolerance=1e-9)
-        with mock.patch.object(arrange, "MOST_PAIRS", 2000):
+        with mock.patch.object(arrange, "MAX_PAIRS", 2000):
             self.refused(fan, "too dense: more than 2000 pairs of its ", " edges may be closer than ", tolerance=1e-9, minimum_angle=0.0, minimum_distance=0.0)
 
     def test_what_is_no_fracture(self):

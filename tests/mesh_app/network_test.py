@@ -199,7 +199,7 @@ class Networks(ProgramTest):
         self.assertIn("none/a.csv: cannot be written", self.draw(file, "--unchecked", output="none/a", expect=1))
 
     def test_bad_files(self):
-        for old, new, told in (
+        for old, new, reported in (
                 ("seed = 3", "seed = -3", "seed: is -3, must be a whole number of at least 0"),
                 ("seed = 3", "sed = 3", "sed: is unknown; the entries here are seed, domain, sets"),
                 ("seed = 3", "seed 3", "is not a file in TOML: Expected '=' after a key in a key/value pair (at line 1"),
@@ -231,7 +231,7 @@ class Networks(ProgramTest):
                 file.write_text(SET_3D.replace(old, new))
                 error = self.draw(file, "--unchecked", expect=1)
                 self.assertIn(f"sprekk: {file}: ", error)
-                self.assertIn(told, error)
+                self.assertIn(reported, error)
                 self.assertFalse(list(self.folder.glob("net*")))
         self.assertIn("absent.toml: cannot be read: No such file", self.draw("absent.toml", expect=1))
         file.write_text("[domain]\nlower_corner = [0, 0]\nupper_corner = [3, 3]\n"
@@ -241,11 +241,11 @@ class Networks(ProgramTest):
     def test_examples_run(self):
         """The table has the fractures of the output, and the scene can be meshed, checked and run."""
         for dim in (2, 3):
-            told = self.draw(FOLDER / f"statistics_{dim}d.toml", output=f"net{dim}")
+            reported = self.draw(FOLDER / f"statistics_{dim}d.toml", output=f"net{dim}")
             scene = self.folder / f"net{dim}.xml"
             with open(self.folder / f"net{dim}.csv") as file:
                 rows = list(csv.DictReader(file))
-            numbers = [int(line.split()[1]) for line in told.splitlines() if " fractures, " in line]
+            numbers = [int(line.split()[1]) for line in reported.splitlines() if " fractures, " in line]
             self.assertEqual(len(rows), sum(numbers))
             made = ["-o", str(self.folder / f"net{dim}.msh"), "--program", str(program.PROGRAM)]
             with contextlib.redirect_stderr(io.StringIO()):

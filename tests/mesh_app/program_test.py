@@ -65,9 +65,9 @@ class MeshTest(ProgramTest):
     def refused(self, file, *expected, kind=None, **network):
         """Checks the error: the number of its lines, and a text in each line."""
         described = {"file": file.name, **({"format": kind} if kind else {})}
-        told = self.mesh(self.scene(fractures={"set": described}, **network), expect=1).removeprefix("sprekk: ").splitlines()
-        self.assertEqual(len(told), len(expected), told)
-        for line, words in zip(told, expected):
+        reported = self.mesh(self.scene(fractures={"set": described}, **network), expect=1).removeprefix("sprekk: ").splitlines()
+        self.assertEqual(len(reported), len(expected), reported)
+        for line, words in zip(reported, expected):
             self.assertIn(words, line)
 
 
@@ -126,8 +126,8 @@ class Files(MeshTest):
         self.refused(net, f'{net}: line 2: has no number in column 5, "y1"')
         other = self.write("other.csv", "name,x0,y0,x1,y1", "A,0.2,0.2,0.4,0.2")
         self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5")
-        told = self.mesh(self.scene(fractures={"one": {"file": "net.csv"}, "two": {"file": "other.csv"}}), expect=1)
-        self.assertIn(f'fracture A ({other}: line 2): has the name "A", as fracture A ({net}: line 2) of another set', told)
+        reported = self.mesh(self.scene(fractures={"one": {"file": "net.csv"}, "two": {"file": "other.csv"}}), expect=1)
+        self.assertIn(f'fracture A ({other}: line 2): has the name "A", as fracture A ({net}: line 2) of another set', reported)
 
     def test_parts_of_one_fracture(self):
         """Rows with one name or number form one fracture if they meet at ends or along sides, as reported.
@@ -168,9 +168,9 @@ class Files(MeshTest):
         self.mesh(self.scene(fractures={"set": {"file": "net.csv", "random": random}}))
         self.assertEqual([name for name, _ in self.singles()], ["set 1", "set 3", "set 2", "set 4"])
         lines = {"1": {"points": [0.4, 0.5, 0.6, 0.6]}}
-        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv", "lines": lines}}), expect=1)
+        reported = self.mesh(self.scene(fractures={"set": {"file": "net.csv", "lines": lines}}), expect=1)
         one = f"fracture 1 ({self.folder / 'net.csv'}: line 1)"
-        self.assertIn(f'fracture "1" of "set": has the name "set 1", as {one} of another file or section', told)
+        self.assertIn(f'fracture "1" of "set": has the name "set 1", as {one} of another file or section', reported)
 
     def test_remarks_in_quotes(self):
         """Columns that are not entries of a joint may have any content. The program ignores them."""
@@ -377,8 +377,8 @@ class Files(MeshTest):
         self.write("net.csv", "1,0.5,0.2,0.8,0.3")
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, domain={**corners, "sides": ["&quot;left, below&quot;", "right", "above"]}))
         self.assertIn('boundary      "left, below"', self.call("mesh-info", "net.msh", "--fractures", "set")[0])
-        told = self.mesh(self.scene(fractures={'a &quot; b': {"file": "net.csv"}}), expect=1)
-        self.assertIn("contains a quotation mark", told)
+        reported = self.mesh(self.scene(fractures={'a &quot; b': {"file": "net.csv"}}), expect=1)
+        self.assertIn("contains a quotation mark", reported)
 
     def test_one_bad_row_of_many(self):
         rows = [f"{k},0.2,{0.2 + 6e-6 * k},0.8,{0.2 + 6e-6 * k}" for k in range(100000)]
@@ -408,11 +408,11 @@ class Files(MeshTest):
         (self.folder / "zeros").symlink_to("/dev/zero")
         for name in ("pipe", "zeros"):
             self.refused(self.folder / name, f"{name}: cannot be read: is not a regular file, but a pipe, a socket or a device")
-        with mock.patch("tables.MOST_CHARACTERS", 100):
+        with mock.patch("tables.MAX_CHARACTERS", 100):
             self.refused(self.write("net.csv", *["1,0.2,0.5,0.8,0.5"] * 6), "net.csv: cannot be read: has more than 100 characters")
 
     def test_more_fractures_than_can_be_meshed(self):
-        with mock.patch("description.MOST_FRACTURES", 3):
+        with mock.patch("description.MAX_FRACTURES", 3):
             self.refused(self.write("net.csv", *(f"{k},0.2,0.{k},0.8,0.{k}" for k in range(1, 6))), "fractures > set: increases the network to 5 fractures, at most 3 are allowed")
 
 
@@ -436,8 +436,8 @@ class Runs(MeshTest):
 
     def test_misspelt_entry_of_a_joint(self):
         net = self.write("net.csv", "id,x0,y0,x1,y1,remark,friction coeficient", "1,0.2,0.5,0.8,0.5,a,0.5")
-        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}), expect=1)
-        self.assertEqual(told, f'sprekk: {net}: line 1: column 7 has the title "friction coeficient", which is no entry of a joint; '
+        reported = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}), expect=1)
+        self.assertEqual(reported, f'sprekk: {net}: line 1: column 7 has the title "friction coeficient", which is no entry of a joint; '
                                'did you mean "friction coefficient"?\n')
 
     def test_near_fractures(self):
@@ -451,7 +451,7 @@ class Runs(MeshTest):
             self.assertRegex(err.getvalue(), r"^warning: .*scene.xml: fracture 1 \(.*net.csv: line 1\) and fracture 2 \(.*net.csv: line 2\) "
                                              r'are 0.001 m apart at \(0.5, 0.5\d*\) without meeting; if they should meet, .* "tolerance"\n$')
 
-    def test_what_takes_long_is_told(self):
+    def test_long_operations_are_reported(self):
         from progress import doing
         err = io.StringIO()
         with mock.patch("progress.PATIENCE", 0.01), contextlib.redirect_stderr(err):
@@ -480,16 +480,16 @@ class Runs(MeshTest):
     def test_output_that_cannot_be_written(self):
         """An unwritable output gives one line without a Python traceback, and leaves no files."""
         (self.folder / "net.msh").mkdir()
-        told = self.mesh(self.simple(), expect=1)
-        self.assertRegex(told, r"^sprekk: .*scene.xml: .*net.msh.*: Is a directory\n$")
+        reported = self.mesh(self.simple(), expect=1)
+        self.assertRegex(reported, r"^sprekk: .*scene.xml: .*net.msh.*: Is a directory\n$")
         self.assertEqual([p.name for p in self.folder.glob("net.msh*")], ["net.msh"])
         self.write("file", "")
-        told = self.mesh(self.simple(), output="file/net.msh", expect=1)
-        self.assertRegex(told, r"^sprekk: .*scene.xml: .*/file[^\n]*: (Not a directory|File exists)\n$")
+        reported = self.mesh(self.simple(), output="file/net.msh", expect=1)
+        self.assertRegex(reported, r"^sprekk: .*scene.xml: .*/file[^\n]*: (Not a directory|File exists)\n$")
         if Path("/dev/full").exists():
             (self.folder / f"full.msh.{os.getpid()}").symlink_to("/dev/full")
-            told = self.mesh(self.simple(), output="full.msh", expect=1)
-            self.assertRegex(told, r"^sprekk: .*scene.xml: .*full.msh: No space left on device\n$")
+            reported = self.mesh(self.simple(), output="full.msh", expect=1)
+            self.assertRegex(reported, r"^sprekk: .*scene.xml: .*full.msh: No space left on device\n$")
             self.assertEqual(list(self.folder.glob("full.msh*")), [])
 
     def test_absurd_sizes_are_refused(self):
@@ -497,15 +497,15 @@ class Runs(MeshTest):
         self.write("net.csv", *self.LINES)
         for entry, value in (("relative size", 1e-9), ("size", 1e-6), ("size at boundary", 1e-6), ("growth", 1e-9), ("size at tips", 2e-7)):
             scene = self.scene(fractures={"set": {"file": "net.csv"}}, **{"relative_size": 0.2, "growth": 1e-4 if "tips" in entry else 0.5, entry.replace(" ", "_"): value})
-            begin, told = time.monotonic(), self.mesh(scene, expect=1)
-            self.assertRegex(told, r'network: sizes require about [0-9.e+]+ cells, [0-9]+% of them due to "[a-z ]+"; "most cells" is 1e\+07')
+            begin, reported = time.monotonic(), self.mesh(scene, expect=1)
+            self.assertRegex(reported, r'network: sizes require about [0-9.e+]+ cells, [0-9]+% of them due to "[a-z ]+"; "maximum cells" is 1e\+07')
             if entry != "growth":
-                self.assertIn(f'due to "{entry}"', told)
+                self.assertIn(f'due to "{entry}"', reported)
             self.assertLess(time.monotonic() - begin, 20)
-        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, size_at_tips=1e-12), expect=1)
-        self.assertIn("network > size at tips: is 1e-12 m, must be at least 1e-7 of the domain's diagonal, 1.41e-07 m", told)
-        told = self.mesh(self.simple(), "--set", "Mesh file.network.most cells=100", expect=1)
-        self.assertIn('"most cells" is 100', told)
+        reported = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, size_at_tips=1e-12), expect=1)
+        self.assertIn("network > size at tips: is 1e-12 m, must be at least 1e-7 of the domain's diagonal, 1.41e-07 m", reported)
+        reported = self.mesh(self.simple(), "--set", "Mesh file.network.maximum cells=100", expect=1)
+        self.assertIn('"maximum cells" is 100', reported)
 
     def test_expected_cells_are_about_as_many_as_are_made(self):
         from conformity import network, planned
@@ -522,8 +522,8 @@ class Runs(MeshTest):
         random = {"number": 30, "seed": 1, "shortest": 0.1, "longest": 0.5}
         dense = {"tolerance": 1e-6, "minimum_distance": 0.003}
         self.mesh(self.scene(fractures={"set": {"random": random}}, **dense))
-        told = [line for line in self.report()["repairs"] if "drawn again" in line]
-        self.assertGreater(len(told), 0)
+        reported = [line for line in self.report()["repairs"] if "drawn again" in line]
+        self.assertGreater(len(reported), 0)
         self.assertEqual(self.report()["sets"]["set"]["fractures"], 30)
         self.mesh(self.scene(fractures={"set": {"random": {**random, "number": 300}}}, **dense), expect=1)
         self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.2,0.501,0.8,0.501")
@@ -598,8 +598,8 @@ class Runs(MeshTest):
     def test_a_file_beside_the_network(self):
         scene = self.simple()
         self.mesh(scene, output="other.msh")
-        told = self.launch("run", scene, "--output", "out", "--set", "Mesh file.path=other.msh")
-        self.assertIn('"path" is given by --set; the section "network" is ignored', told)
+        reported = self.launch("run", scene, "--output", "out", "--set", "Mesh file.path=other.msh")
+        self.assertIn('"path" is given by --set; the section "network" is ignored', reported)
         self.assertFalse((self.folder / "out/network.msh").exists())
         both = self.write("both.xml", scene.read_text().replace('<ParameterList name="network">', '<Parameter name="path" type="string" value="other.msh"/><ParameterList name="network">'))
         for command in ("run", "check"):
@@ -611,8 +611,8 @@ class Runs(MeshTest):
         self.launch("run", scene, "--output", "out")
         self.write("net.csv", "1,0.2,0.5,0.8")
         for ranks in (1, 2):
-            told = self.launch("run", scene, "--ranks", ranks, "--output", "out", expect=1)
-            self.assertEqual(told, f"sprekk: net.csv: line 1: has 4 columns, needs 5: id,x0,y0,x1,y1\n")
+            reported = self.launch("run", scene, "--ranks", ranks, "--output", "out", expect=1)
+            self.assertEqual(reported, f"sprekk: net.csv: line 1: has 4 columns, needs 5: id,x0,y0,x1,y1\n")
         self.assertEqual(self.results()["status"], "failed")
         self.assertIn("line 1: has 4 columns", self.results()["reason"])
         self.launch("check", scene, expect=1)
@@ -626,15 +626,15 @@ class Runs(MeshTest):
         self.assertEqual(self.results()["status"], "completed")
 
     def test_descriptions(self):
-        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, tolerence=1.0), expect=1)
-        self.assertRegex(told, r'scene.xml: Sprekk > Mesh file > network > "tolerence": unknown. Did you mean "tolerance"\?')
-        told = self.mesh(self.scene(fractures={"set": {"random": {"number": 3, "shortest": 2.0, "longest": 1.0}}}), expect=1)
-        self.assertIn('"longest": is 1, "shortest" 2', told)
+        reported = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, tolerence=1.0), expect=1)
+        self.assertRegex(reported, r'scene.xml: Sprekk > Mesh file > network > "tolerence": unknown. Did you mean "tolerance"\?')
+        reported = self.mesh(self.scene(fractures={"set": {"random": {"number": 3, "shortest": 2.0, "longest": 1.0}}}), expect=1)
+        self.assertIn('"longest": is 1, "shortest" 2', reported)
         self.write("net.csv", "1,0,0,1,1")
-        told = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, domain={"lower corner": [0.0, 0.0], "upper corner": [1.0]}), expect=1)
-        self.assertIn('"upper corner": has 1 coordinates', told)
-        told = self.mesh(self.write("empty.xml", '<ParameterList name="Sprekk"/>'), expect=1)
-        self.assertIn("has no section Sprekk > Mesh file > network", told)
+        reported = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}, domain={"lower corner": [0.0, 0.0], "upper corner": [1.0]}), expect=1)
+        self.assertIn('"upper corner": has 1 coordinates', reported)
+        reported = self.mesh(self.write("empty.xml", '<ParameterList name="Sprekk"/>'), expect=1)
+        self.assertIn("has no section Sprekk > Mesh file > network", reported)
 
     def test_picture(self):
         self.mesh(self.simple(), "--picture", str(self.folder / "net.png"))

@@ -61,7 +61,7 @@ class Entries(unittest.TestCase):
         with self.assertRaisesRegex(AttributeError, 'Time has no entry "cells"'):
             push().time.cells = 3
 
-    def test_what_is_wrong_is_told_in_the_words_of_the_program(self):
+    def test_what_is_wrong_is_reported_in_the_words_of_the_program(self):
         scene = push()
         scene.time.steps = 0
         with self.assertRaisesRegex(sprekk.Error, 'scene: Sprekk > Time > "steps": is 0, must be'):

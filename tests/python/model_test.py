@@ -150,7 +150,7 @@ class Block(unittest.TestCase):
         self.assertIn("here alone", str(raised.exception))
         self.model.step(self.model.time + 0.1)  # all ranks still work together
 
-    def test_what_is_wrong_is_told(self):
+    def test_what_is_wrong_is_reported(self):
         with self.assertRaisesRegex(sprekk.Error, 'there is no output "slipp"'):
             self.model.output("slipp")
         with self.assertRaisesRegex(sprekk.Error, 'there is no field "x"'):

@@ -129,8 +129,8 @@ class Laws(unittest.TestCase):
         np.testing.assert_array_equal(model.output("own shear"), shear)
         self.assertEqual(model.units()["own shear"], "Pa")
         self.assertTrue(with_it and all(with_it))
-        told = results["steps"][-1]["fractures"]["fracture"]["mean_own_shear"]
-        self.assertAlmostEqual(np.ravel(told)[0] / mean, 1, delta=1e-9)
+        reported = results["steps"][-1]["fractures"]["fracture"]["mean_own_shear"]
+        self.assertAlmostEqual(np.ravel(reported)[0] / mean, 1, delta=1e-9)
         self.assertIn("mean_own_shear", " ".join(model.fractures().columns))
 
     def test_derivatives_of_a_law(self):
@@ -197,7 +197,7 @@ class Derivatives(unittest.TestCase):
             for name in first.fields:
                 other.field(name)[:] = first.field(name)
             other.step(1)  # same length as the second step
-            ends.append(self.told(other))
+            ends.append(self.reported(other))
         self.assertAlmostEqual(found["Materials.rock.Young's modulus"] / ((ends[0] - ends[1]) / (2e-4 * E)), 1, delta=1e-6)
 
     @staticmethod
@@ -216,9 +216,9 @@ class Derivatives(unittest.TestCase):
             number = values
         model = sprekk.Model(scene.changed({path: number}))
         model.step(1)
-        return self.told(model)
+        return self.reported(model)
 
-    def told(self, model):
+    def reported(self, model):
         whole = {name: model.gather(name, field=True) for name in ("displacement", "traction")}
         return COMM.bcast(self.quantity(whole)[0] if COMM.rank == 0 else None)
 

@@ -291,7 +291,7 @@ class Scenes(BadInput):
         path.write_text(text.replace("\xf8", "&oslash;"))
         self.refuse(["a.xml: not well-formed XML: line 16", "undefined entity"], "check", "a.xml")
 
-    def test_misspelt_entry_is_told_once(self):
+    def test_misspelt_entry_is_reported_once(self):
         for old, new in (("displacement", "displacment"), ("friction coefficient", "friction coeficient"), ("shear modulus", "sheer modulus")):
             text = self.scene(PUSH).read_text().replace(f'name="{old}"', f'name="{new}"', 1)
             (self.folder / "a.xml").write_text(text)
@@ -304,12 +304,12 @@ class Scenes(BadInput):
         self.refuse_set(['Regions > bulk > "initial stress": is "t"; it may depend on x, y, z, not on t'], "Regions.bulk.initial stress={0, t, 0, 0}")
 
     def test_names_of_other_programs_are_known(self):
-        for name, told in (("kn", 'Did you mean "normal stiffness"?'), ("shear stiffness", 'Did you mean "tangential stiffness"?'),
+        for name, reported in (("kn", 'Did you mean "normal stiffness"?'), ("shear stiffness", 'Did you mean "tangential stiffness"?'),
                            ("K_s", 'Did you mean "tangential stiffness"?'), ("Cohesion", 'It belongs to bond "constant cohesion", "linear softening"; here it is "none"'),
                            ("JRC", 'Did you mean "joint roughness coefficient"? It belongs to friction "Barton-Choubey"'),
                            ("JCS", 'Did you mean "joint wall strength"?'), ("mu", 'Did you mean "friction coefficient"?\n'),
                            ("phi", 'Did you mean "friction angle"?\n'), ("psi", 'Did you mean "dilation angle"?\n')):
-            self.refuse_set([f'joint > "{name}": unknown. ', told], f"Materials.joint.{name}=1")
+            self.refuse_set([f'joint > "{name}": unknown. ', reported], f"Materials.joint.{name}=1")
 
     def test_laws_of_joints(self):
         joint = "Materials.rough joint."
@@ -658,46 +658,46 @@ class AllAtOnce(BadInput):
         """Checks that each line begins with the name of the scene, and contains the words of one item of `lines`."""
         for command in ("check", "run"):
             err = self.refuse([], command, *arguments)
-            told = err.removeprefix("sprekk: ").splitlines()
-            self.assertEqual(len(told), len(lines), err)
+            reported = err.removeprefix("sprekk: ").splitlines()
+            self.assertEqual(len(reported), len(lines), err)
             for words in lines:
-                self.assertEqual(sum(all(word in line for word in words) for line in told), 1, (words, err))
-            for line in told:
+                self.assertEqual(sum(all(word in line for word in words) for line in reported), 1, (words, err))
+            for line in reported:
                 self.assertTrue(line.startswith(f"{arguments[0]}: "), err)
 
     def sets(self, *overrides):
         return [word for override in overrides for word in ("--set", override)]
 
     TYPO = "Solver.tolerence=1"
-    TYPO_TOLD = ['"tolerence"', "unknown"]
+    TYPO_REPORTED = ['"tolerence"', "unknown"]
     CLASH = ("Boundary conditions.third.boundary=south", "Boundary conditions.third.displacement={0.5, free}")
-    CLASH_TOLD = ['"fixed" and "third" prescribe', "component x"]
+    CLASH_REPORTED = ['"fixed" and "third" prescribe', "component x"]
 
     def test_box(self):
         scene = self.scene(PUSH)
         conflict = self.sets(self.TYPO, *self.CLASH)
-        self.refuse_all([self.TYPO_TOLD, self.CLASH_TOLD], scene, *conflict)
-        self.refuse_all([self.TYPO_TOLD, self.CLASH_TOLD, ['moved > "boundary"', '"nort"'], ['Regions > "rok"', '"bulk"'],
+        self.refuse_all([self.TYPO_REPORTED, self.CLASH_REPORTED], scene, *conflict)
+        self.refuse_all([self.TYPO_REPORTED, self.CLASH_REPORTED, ['moved > "boundary"', '"nort"'], ['Regions > "rok"', '"bulk"'],
                          ['Bulk > "material"', '"rok"'], ['fourth > "displacement"', "3 values"], ['"density": missing']],
                         scene, *conflict,
                         *self.sets("Boundary conditions.moved.boundary=nort", "Regions.rok.material=rock", "Bulk.material=rok",
                                    "Boundary conditions.fourth.boundary=east", "Boundary conditions.fourth.displacement={0, 0, 0}",
                                    "Bulk.gravity={0, -1}", "Regions.bulk.material=rock"))
-        loose = ("Boundary conditions.fixed.displacement={free, 0}", "Boundary conditions.moved.displacement={free, -1}")
-        self.refuse_all([self.TYPO_TOLD, ["nothing constrains the rock"]], scene, *self.sets(self.TYPO, *loose))
+        floating = ("Boundary conditions.fixed.displacement={free, 0}", "Boundary conditions.moved.displacement={free, -1}")
+        self.refuse_all([self.TYPO_REPORTED, ["nothing constrains the rock"]], scene, *self.sets(self.TYPO, *floating))
         both = ("Boundary conditions.fourth.boundary=north", "Boundary conditions.fourth.displacement={free, 1}")
-        self.refuse_all([['"fourth" and "moved" prescribe', "component y"], ["nothing constrains the rock"]], scene, *self.sets(*loose, *both))
-        self.refuse_all([self.TYPO_TOLD, ['"displacement"[1]: "0/(t-1)"', "is nan"]], scene,
+        self.refuse_all([['"fourth" and "moved" prescribe', "component y"], ["nothing constrains the rock"]], scene, *self.sets(*floating, *both))
+        self.refuse_all([self.TYPO_REPORTED, ['"displacement"[1]: "0/(t-1)"', "is nan"]], scene,
                         *self.sets(self.TYPO, "Boundary conditions.moved.displacement={0, 0/(t-1)}"))
 
-    def test_what_only_follows_is_not_told(self):
+    def test_what_only_follows_is_not_reported(self):
         misspelt = self.scene_with(('"Fractures">\n    <ParameterList name="fracture"', '"Fractures">\n    <ParameterList name="fractrue"'))
         self.refuse_all([['Fractures > "fractrue"', 'Did you mean "fracture"?']], misspelt)
         scene = self.scene(PUSH)
         moved = "Boundary conditions.moved."
         unknown = ['moved > "displacment"', "unknown"]
-        loose = ("Boundary conditions.fixed.displacement={free, 0}", moved + "displacement={free, -1}")
-        self.refuse_all([unknown], scene, *self.sets(*loose, moved + "displacment=1"))  # may be a support
+        floating = ("Boundary conditions.fixed.displacement={free, 0}", moved + "displacement={free, -1}")
+        self.refuse_all([unknown], scene, *self.sets(*floating, moved + "displacment=1"))  # may be a support
         self.refuse_all([['"endd"', "unknown"]], scene, *self.sets(
             "Time.endd=2", "Boundary conditions.third.boundary=west", "Boundary conditions.third.displacement={t-2, 0}"))
         self.refuse_all([['"cels"', "unknown"]], scene, *self.sets(*self.CLASH, "Mesh.cels={2, 2}"))
@@ -713,10 +713,10 @@ class AllAtOnce(BadInput):
         scene = self.scene("gmsh/crossing.xml")
         absent = ("Mesh file.path=absent.msh", ["absent.msh: there is no such file"])
         rok = ("Bulk.material=rok", ['Bulk > "material"', '"rok"'])
-        self.refuse_all([absent[1], rok[1], self.TYPO_TOLD, ['Fractures > "f3"', '"f2"']], scene,
+        self.refuse_all([absent[1], rok[1], self.TYPO_REPORTED, ['Fractures > "f3"', '"f2"']], scene,
                         *self.sets(absent[0], rok[0], self.TYPO, "Fractures.f3.material=joint"))
         self.refuse_all([absent[1], ['"ordr"', "unknown"]], scene, *self.sets(absent[0], "Mesh file.ordr=1"))
-        self.refuse_all([rok[1], self.TYPO_TOLD, ['third > "boundary"', '"nort"', '"north"'], ['"a" and "held" prescribe', "component x"]], scene,
+        self.refuse_all([rok[1], self.TYPO_REPORTED, ['third > "boundary"', '"nort"', '"north"'], ['"a" and "held" prescribe', "component x"]], scene,
                         *self.sets(rok[0], self.TYPO, "Boundary conditions.third.boundary=nort", "Boundary conditions.third.traction={0, 0}",
                                    "Boundary conditions.a.boundary=south", "Boundary conditions.a.displacement={1, free}"))
 
@@ -794,8 +794,8 @@ class Outputs(BadInput):
         self.run_scene("gmsh/crossing.xml", "Mesh file.path=absent.msh", output="new", expect=1)
         self.assertIn("absent.msh: there is no such file", self.results("new")["reason"])
 
-    def test_failed_step_is_told_on_standard_error(self):
-        limits = ["--set", "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", "--set", "Time.tethers=false"]
+    def test_failed_step_is_reported_on_standard_error(self):
+        limits = ["--set", "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", "--set", "Time.proximal continuation=false"]
         for ranks in (1, 3):
             out, err = self.call("run", self.scene("verification/cyclic_2d.xml"), "--output", "out", *limits, ranks=ranks, expect=3)
             self.assertNotIn("no convergence", out)

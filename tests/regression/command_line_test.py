@@ -76,11 +76,11 @@ class Errors(ProgramTest):
         line = '    <Parameter name="cells" type="Array(int)" value="{2, 2}"/>\n'
         self.expect_error(self.changed(line, ""), ["changed.xml", "Sprekk > Mesh", '"cells"', "missing"])
 
-    def test_several_errors_are_told_together(self):
+    def test_several_errors_are_reported_together(self):
         self.expect_error(self.scene(PUSH), ['"tolerence"', '"friction coefficient"'], "Solver.tolerence=1",
                           "Materials.joint.friction coefficient=-1", on_two=True)
 
-    def test_all_that_is_wrong_is_told_at_once(self):
+    def test_all_that_is_wrong_is_reported_at_once(self):
         path = self.folder / "wrong.xml"
         text = (ROOT / "docs" / "shear_test.xml").read_text()
         for old, new in (('value="0.25"', 'value="O.25"'),
@@ -109,7 +109,7 @@ class Errors(ProgramTest):
                 self.assertEqual(sum(all(word in line for word in words) for line in lines), 1, err)
         self.assertEqual(len(lines), 15, err)
 
-    def test_all_conflicts_of_conditions_are_told(self):
+    def test_all_conflicts_of_conditions_are_reported(self):
         side = "Boundary conditions.side."
         _, err = self.call("check", ROOT / "docs" / "shear_test.xml", "--set", side + "boundary=west", "--set",
                            side + "displacement={1 mm, 2 mm}", expect=1)
@@ -207,7 +207,7 @@ class Commands(ProgramTest):
 
     def test_numbers_of_safety(self):
         slope = self.scene("slopes/plane_2d.xml")
-        for option, allowed in (("--tolerance", "1e-12 to 1"), ("--first", "1e-06 to 1e+06"), ("--most", "1 to 1e+06")):
+        for option, allowed in (("--tolerance", "1e-12 to 1"), ("--first", "1e-06 to 1e+06"), ("--max", "1 to 1e+06")):
             for value in ("nan", "-1", "inf", "x", "1e9"):
                 _, err = self.call("safety", slope, option, value, expect=2)
                 self.assertEqual(err.count("\n"), 1, err)

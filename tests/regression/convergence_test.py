@@ -82,9 +82,9 @@ class Convergence(ProgramTest):
         scene_file.save(tree, path, "Written by convergence_test.py.")
         return self.run_scene(str(path), *overrides, **options)
 
-    def cheap(self, results, most, label):
+    def cheap(self, results, maximum, label):
         for step in results["steps"]:
-            self.assertLessEqual(step["newton_iterations"], most, f"{label}, t = {step['time']}")
+            self.assertLessEqual(step["newton_iterations"], maximum, f"{label}, t = {step['time']}")
             self.assertEqual(step["cuts"], 0, f"{label}, t = {step['time']}")
 
     def test_short_steps_of_heat_take_one_iteration(self):
@@ -199,8 +199,8 @@ class Convergence(ProgramTest):
                 "Time": {"end": 10.0, "tolerance": 3e-3}, "Output": {"vtu": False}}
         for values in ([1e-6] * 4, [1e-6, 1e-6, 2e-6, 1e-6]):
             tree["Tables"]["q"]["values"] = values
-            for least in (1e-8, 1e-3):
-                tree["Time"]["smallest step"] = least
+            for minimum in (1e-8, 1e-3):
+                tree["Time"]["smallest step"] = minimum
                 results = self.run_tree(tree)
                 self.assertEqual(results["status"], "completed")
                 self.assertLess(len(results["steps"]), 400)

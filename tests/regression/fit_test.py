@@ -109,7 +109,7 @@ class Fits(ProgramTest):
         self.assertEqual(status, expect, out.getvalue() + err.getvalue())
         return out.getvalue() if expect == 0 else err.getvalue()
 
-    def told(self, text):
+    def reported(self, text):
         """Returns {name: (value, low, high)} of the output."""
         lines = [line for line in text.splitlines() if "95 %:" in line]
         found = {}
@@ -120,7 +120,7 @@ class Fits(ProgramTest):
 
     def test_the_curve_of_known_parameters_gives_them_back(self):
         path = self.measured(0)
-        for name, (value, _, _) in self.told(self.fit(path, *ALONG, *STRESS, *BOTH)).items():
+        for name, (value, _, _) in self.reported(self.fit(path, *ALONG, *STRESS, *BOTH)).items():
             self.assertAlmostEqual(value / TRUE[name], 1, delta=1e-6)
         self.assertTrue((self.folder / "curve_fit.png").is_file())
 
@@ -134,11 +134,11 @@ class Fits(ProgramTest):
         widths = []
         more = ["--match", "normal stress=-traction_n", "--match", "normal displacement=change of jump_n"]
         for matched in (STRESS, STRESS + more):
-            told = self.told(self.fit(path, *ALONG, *matched, *BOTH))
-            for name, (value, low, high) in told.items():
+            reported = self.reported(self.fit(path, *ALONG, *matched, *BOTH))
+            for name, (value, low, high) in reported.items():
                 self.assertTrue(low < value < high)
-                self.assertTrue(2 * low - value <= TRUE[name] <= 2 * high - value, told)
-            widths.append(told["joint roughness coefficient"][2] - told["joint roughness coefficient"][1])
+                self.assertTrue(2 * low - value <= TRUE[name] <= 2 * high - value, reported)
+            widths.append(reported["joint roughness coefficient"][2] - reported["joint roughness coefficient"][1])
         self.assertLess(widths[1], widths[0])  # more columns reduce the interval
         self.assertLess(widths[0], 2)
 

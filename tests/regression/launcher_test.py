@@ -211,9 +211,9 @@ class Launcher(ProgramTest):
         for ranks in ("1", "2"):
             with open("/dev/full", "w") as full:
                 done = subprocess.run(["./sprekk", "run", PUSH, "--ranks", ranks, "--output", "out"], stdout=full, stderr=subprocess.PIPE, **self.surroundings)
-            told = [line for line in done.stderr.splitlines() if "building" not in line and "configuring" not in line]
-            self.assertEqual((done.returncode, len(told)), (1, 1), done.stderr)
-            self.assertRegex(told[0], "standard output.*(cannot be written|No space left)")
+            reported = [line for line in done.stderr.splitlines() if "building" not in line and "configuring" not in line]
+            self.assertEqual((done.returncode, len(reported)), (1, 1), done.stderr)
+            self.assertRegex(reported[0], "standard output.*(cannot be written|No space left)")
             self.assertEqual(self.results()["status"], "completed")
 
     def test_progress_of_the_build_in_a_pipe(self):

@@ -12,7 +12,7 @@ PUSH = "seed/push_2d.xml"
 ROCK, JOINT = "Bulk.material=", "Fractures.fracture.material="
 
 
-def told(results):
+def reported(results):
     """Returns the results that do not depend on the clock, the folder or the names of materials."""
     return {key: results[key] for key in ("status", "steps")}
 
@@ -116,8 +116,8 @@ class Materials(ProgramTest):
                                  "Materials.rock.Lame's first parameter=7020826106", "Materials.joint.friction coefficient=0.6",
                                  "Materials.joint.tangential stiffness=infinite", output="written")
         other = self.run_scene(PUSH, output="other")
-        self.assertEqual(told(named), told(written))
-        self.assertNotEqual(told(named), told(other))
+        self.assertEqual(reported(named), reported(written))
+        self.assertNotEqual(reported(named), reported(other))
 
     def test_effective_input_has_the_set_in_full(self):
         first = self.run_scene(PUSH, ROCK + "claystone", JOINT + "claystone fault", output="first")
@@ -127,13 +127,13 @@ class Materials(ProgramTest):
         self.assertEqual(float(entries["claystone fault"]["initial aperture"]), 1e-5)
         self.assertIn("DECOVALEX", entries["claystone"]["source"])
         again = self.run_scene(str(self.folder / "first" / "effective_input.xml"), output="again")
-        self.assertEqual(told(first), told(again))
+        self.assertEqual(reported(first), reported(again))
 
     def test_the_scenes_own_material_wins(self):
         own = self.scene(PUSH).read_text().replace('"rock"', '"granite"')
         (self.folder / "own.xml").write_text(own)
         results = self.run_scene(str(self.folder / "own.xml"))
-        self.assertEqual(told(results), told(self.run_scene(PUSH, output="plain")))
+        self.assertEqual(reported(results), reported(self.run_scene(PUSH, output="plain")))
         self.assertEqual(float(self.entries_of(self.folder / "out" / "effective_input.xml")["granite"]["shear modulus"]), 1e6)
 
     def test_a_point_takes_a_joint_of_the_library(self):

@@ -130,7 +130,7 @@ TEST(Fractures, GhostsAreExchangedOnce) {
 TEST(Iterates, ExchangeGhostsOnce) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> scenes = {
       {"seed/immersed_3d.xml", {}},
-      {"verification/regimes_2d.xml", {"Solver.maximum iterations=3", "Time.tethers=false"}},
+      {"verification/regimes_2d.xml", {"Solver.maximum iterations=3", "Time.proximal continuation=false"}},
       {"contact/snap_back_2d.xml", {}},
       {"contact/floating_2d.xml", {}},
       {"contact/network_soft_2d.xml", {}},

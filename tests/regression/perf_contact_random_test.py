@@ -205,7 +205,7 @@ class Verdicts(ProgramTest):
         for status in (1, 134):
             self.assertEqual(self.verdict(status, 0.0), ("failed", [f"status {status}: said"]))
 
-    def test_scenes_that_fail_are_kept(self):
+    def test_scenes_that_fail_are_saved(self):
         broken = self.folder / "broken"
         broken.write_text("#!/bin/sh\necho no good; exit 5\n")
         broken.chmod(0o755)
@@ -213,10 +213,10 @@ class Verdicts(ProgramTest):
                    "--binary", broken, "--output", self.folder / "out"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=program.TIME_LIMIT)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-        kept = list((self.folder / "out/failures").iterdir())
+        saved = list((self.folder / "out/failures").iterdir())
         self.assertRegex(done.stdout.splitlines()[-1], "^failures=1 hangs=0 violations=0 rank_differences=0 newton_median=nan newton_p90=nan$")
-        self.call("check", kept[0])
-        self.assertIn("status 5: no good", kept[0].read_text().splitlines()[0])
+        self.call("check", saved[0])
+        self.assertIn("status 5: no good", saved[0].read_text().splitlines()[0])
         self.assertEqual(len((self.folder / "out/random.csv").read_text().splitlines()), 2)
 
 

@@ -74,11 +74,11 @@ class Violation(ProgramTest):
     def law(self, entries, **kinds):
         return violation.JointLaw(lambda name, default: entries.get(name, default), lambda role: kinds.get(role) or violation.FIRST_KINDS[role])
 
-    def faces(self, load, slip=0.0, **told):
+    def faces(self, load, slip=0.0, **reported):
         """Returns one face under compression with slip."""
         row = np.array([[-load, 0.0]])
         return violation.Faces(1, row, np.zeros(1), np.array([2]), row, np.array([[0.0, slip]]), row, np.zeros(1),
-                               {name.replace("_", " "): np.array([value]) for name, value in told.items()})
+                               {name.replace("_", " "): np.array([value]) for name, value in reported.items()})
 
     def test_laws_at_known_values(self):
         rough = {"joint roughness coefficient": 10, "joint wall strength": 100e6, "residual friction angle": 30, "joint length": 0.1,
@@ -110,11 +110,11 @@ class Violation(ProgramTest):
 
         def history(step):
             return dict(zip(violation.PARTS, violation.violation(step, before, self.scales, self.input.laws, path)))["history"]
-        self.assertGreater(worn.told["damage history"].min(), 0.1)
+        self.assertGreater(worn.history["damage history"].min(), 0.1)
         self.assertLess(history(worn), 1e-10)
-        worn.told["damage history"] += 0.01
+        worn.history["damage history"] += 0.01
         self.assertAlmostEqual(history(worn), 0.01 / self.scales.length, places=4)
-        worn.told["damage history"] -= 0.01
+        worn.history["damage history"] -= 0.01
         worn.plastic[:, 1:] += 0.001  # a slip increment without a history
         self.assertGreater(history(worn), 1e-4 / self.scales.length)
 

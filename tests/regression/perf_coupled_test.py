@@ -147,7 +147,7 @@ class Coupled(ProgramTest):
                 self.assertAlmostEqual(swept[run.faces.outer].sum() / volume, 1e-3 * dim)
                 self.assertAlmostEqual(swept.sum() / volume, 1e-3 * dim)
 
-    def test_scenes_that_fail_are_kept(self):
+    def test_scenes_that_fail_are_saved(self):
         broken = self.folder / "broken"
         broken.write_text("#!/bin/sh\necho no good; exit 5\n")
         broken.chmod(0o755)
@@ -158,8 +158,8 @@ class Coupled(ProgramTest):
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertEqual(done.stdout.splitlines()[-1], "failures=1 hangs=0 violations=0 rank_differences=0 newton_median=nan newton_p90=nan")
         self.assertIn(f'again: ./sprekk perf coupled --random 12 --seed 7 --only "{name}"', done.stdout)
-        kept, = (self.folder / "out/failures").iterdir()
-        self.assertIn("status 5: no good", kept.read_text().splitlines()[0])
+        saved, = (self.folder / "out/failures").iterdir()
+        self.assertIn("status 5: no good", saved.read_text().splitlines()[0])
 
 
 def add(grid, name, value):

@@ -302,7 +302,7 @@ class Table(ProgramTest):
         self.assertGreater(len(rows), 6)
         self.assertTrue((self.folder / "out/mms2d.png").is_file())
 
-    def test_a_missed_bound_is_told(self):
+    def test_a_missed_bound_is_reported(self):
         from perf.verification import verification
         case = cases.mms2d()
         row = verification.Row("mixed triangle 2", "n=32", 1, 8064, {"u": 2e-4}, {"jump": 0.4, "stress": 1.9}, 1, 1, 0.0, {"u": 1.2})

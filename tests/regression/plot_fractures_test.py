@@ -50,7 +50,7 @@ class Fractures(PlotTest):
 
     def test_loops_of_many_fractures(self):
         """Named curves differ in colour or line style. The legend is sorted by number and beside the axes."""
-        for n, named in ((12, 12), (40, style.MOST_CURVES)):
+        for n, named in ((12, 12), (40, style.MAX_CURVES)):
             figure = loops.of_fractures(*self.means(n), "many")
             legend = figure.axes[2].get_legend()
             labels = [text.get_text() for text in legend.get_texts()]
@@ -145,8 +145,8 @@ class Fractures(PlotTest):
                     scale = np.max(abs(wanted))
                     self.assertTrue(np.allclose(values / (np.max(abs(values)) or 1), wanted / (scale or 1), atol=1e-7))
         x, y = lines["mean stress of the rock"]
-        least, most = mohr.mean_stress(rock)
-        self.assertAlmostEqual((x.max() - x.min()) / x.mean(), (most - least) / (0.5 * (most + least)), 2)
+        minimum, maximum = mohr.mean_stress(rock)
+        self.assertAlmostEqual((x.max() - x.min()) / x.mean(), (maximum - minimum) / (0.5 * (maximum + minimum)), 2)
         envelope = next(data for label, data in lines.items() if label.startswith("strength of"))
         materials = read.scene(self.folder / "out")
         friction = float(next(read.entries(materials["Materials"], "friction coefficient")))

@@ -36,8 +36,8 @@ class Numbers(PlotTest):
         self.assertEqual(np.ptp(style.without_noise(0.5 + noise, 1)), 0)
         self.assertEqual(style.limits(0.5 + noise).single, 0.5 + np.mean(noise[1:]))
         self.assertIsNone(style.limits(np.array([1.0, 2])).single)
-        kept = np.array([1.0, np.nan, 1e-3])
-        self.assertTrue(np.array_equal(style.without_noise(kept, 1), kept, equal_nan=True))
+        saved = np.array([1.0, np.nan, 1e-3])
+        self.assertTrue(np.array_equal(style.without_noise(saved, 1), saved, equal_nan=True))
         figure, ax = style.plt.subplots()
         bar = style.colour_bar(figure, ax, style.limits(np.full(3, 2.5e-11)), style.plt.get_cmap(), "slip (m)")
         figure.canvas.draw()
@@ -51,8 +51,8 @@ class Numbers(PlotTest):
         self.assertEqual((norm.vmin, norm.extend), (0, "max"))
         figure, ax = style.plt.subplots()
         self.assertEqual(style.colour_bar(figure, ax, norm, style.plt.get_cmap(), "").extend, "max")
-        for kept in (np.linspace(0, 1, 1000), np.array([0.0, 1]), np.zeros(5)):
-            self.assertEqual(style.limits(kept, clip=True).extend, "neither")
+        for saved in (np.linspace(0, 1, 1000), np.array([0.0, 1]), np.zeros(5)):
+            self.assertEqual(style.limits(saved, clip=True).extend, "neither")
         self.assertEqual(style.limits(values).extend, "neither")
         both = style.limits(np.concatenate([values, [-100]]), clip=True)
         self.assertEqual(both.extend, "both")

@@ -397,13 +397,13 @@ class Restart(ProgramTest):
         sealed = json.loads(manifest.read_text())["sealed"]
         text = manifest.read_text()
         written = f'"format":{sealed["format"]}'
-        for replacement, told in (("", "an earlier version of Sprekk \\(format 1, "), ('"format":99', "a later version of Sprekk \\(format 99, ")):
+        for replacement, reported in (("", "an earlier version of Sprekk \\(format 1, "), ('"format":99', "a later version of Sprekk \\(format 99, ")):
             changed = text.replace(written + ",", replacement + "," if replacement else "")
             begin = changed.index('"sealed":') + len('"sealed":')
             body = changed[begin:changed.rindex("}")]
             manifest.write_text(f'{{"seal":[{len(body.encode())},{zlib.crc32(body.encode())}],"sealed":{body}}}')
             words = self.go(CYCLIC, EVERY_STEP, QUIET, restart=True, expect=1)
-            self.assertRegex(words, told)
+            self.assertRegex(words, reported)
             self.assertNotIn("damaged", words)
 
     def test_damaged_journal(self):

@@ -57,8 +57,8 @@ class Results(ProgramTest):
             for key in ("fields", "matrices", "modules", "local_groups"):
                 self.assertTrue(r["blocks"][key], key)
             entities = {"displacement": "node", "tip displacement": "enriched node", "traction": "fracture face"}
-            told = {field["name"]: field["entity"] for field in r["blocks"]["fields"]}
-            self.assertEqual({name: told.get(name) for name in entities}, entities)
+            reported = {field["name"]: field["entity"] for field in r["blocks"]["fields"]}
+            self.assertEqual({name: reported.get(name) for name in entities}, entities)
             for phase in ("mesh", "time_steps", "output", "linear_solve"):
                 self.assertGreater(r["timing"][phase]["seconds"], 0)
                 self.assertGreater(r["timing"][phase]["count"], 0)
@@ -197,7 +197,7 @@ class Results(ProgramTest):
 
     def test_failure_keeps_what_was_computed(self):
         for ranks in (1, 2):
-            r = self.run_scene("verification/cyclic_2d.xml", "Solver.maximum iterations=1", "Time.maximum halvings=0", "Time.tethers=false",
+            r = self.run_scene("verification/cyclic_2d.xml", "Solver.maximum iterations=1", "Time.maximum halvings=0", "Time.proximal continuation=false",
                                ranks=ranks, expect=3)
             self.assertEqual(r["status"], "failed")
             self.assertIn("no convergence in 1 iterations", r["reason"])
@@ -207,13 +207,13 @@ class Results(ProgramTest):
             self.assertAlmostEqual(r["steps"][0]["fractures"]["fracture"]["mean_traction"]["local"][1], 0.2 / 3, places=9)
             self.assertTrue((self.folder / "out" / "bulk.pvd").exists())
 
-    def test_failure_is_told(self):
+    def test_failure_is_reported(self):
         out, err = self.call("run", self.scene("verification/cyclic_2d.xml"), "--output", "out", "--set",
-                             "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", "--set", "Time.tethers=false", ranks=2, expect=3)
+                             "Solver.maximum iterations=1", "--set", "Time.maximum halvings=0", "--set", "Time.proximal continuation=false", ranks=2, expect=3)
         self.assertEqual((out + err).count("failed"), 1)
         self.assertIn("no convergence in 1 iterations", out + err)
 
-    def test_doubts_are_told_once(self):
+    def test_doubts_are_reported_once(self):
         def warnings(*overrides, ranks=1):
             sets = [word for override in ("Mesh.cell=quadrilateral", "Time.steps=3", QUIET, *overrides) for word in ("--set", override)]
             return self.call("run", self.scene("flow/source_2d.xml"), "--output", "out", *sets, ranks=ranks)[1].splitlines()
@@ -221,19 +221,19 @@ class Results(ProgramTest):
         self.assertEqual(warnings(), [])
         self.assertEqual(warnings(turned), [])  # mimetic
         for ranks in (1, 2):
-            told = warnings(turned, "Flow.scheme=tpfa", ranks=ranks)
-            self.assertEqual(len(told), 1, told)
-            self.assertIn('Sprekk > Flow > "scheme": in 256 of 256 cells permeability and faces are not orthogonal', told[0])
+            reported = warnings(turned, "Flow.scheme=tpfa", ranks=ranks)
+            self.assertEqual(len(reported), 1, reported)
+            self.assertIn('Sprekk > Flow > "scheme": in 256 of 256 cells permeability and faces are not orthogonal', reported[0])
             core = ["Mesh.regions.core.lower corner={0.25, 0.25}", "Mesh.regions.core.upper corner={0.75, 0.75}"]
-            told = warnings(*core, "Boundary conditions.west.region=core", ranks=ranks)
-            self.assertEqual(len(told), 1, told)
-            self.assertIn('west > "region": "core" does not touch the boundary "west": the condition applies nowhere', told[0])
+            reported = warnings(*core, "Boundary conditions.west.region=core", ranks=ranks)
+            self.assertEqual(len(reported), 1, reported)
+            self.assertIn('west > "region": "core" does not touch the boundary "west": the condition applies nowhere', reported[0])
             self.assertEqual(warnings(*core, "Boundary conditions.west.region=bulk", ranks=ranks), [])
-            told = warnings("Boundary conditions.west.pressure=-5", ranks=ranks)
-            self.assertEqual(len(told), 1, told)
-            self.assertRegex(told[0], "^warning: t = 0.333333: .*source_2d.xml: the pressure of the fluid is below 0 in places")
+            reported = warnings("Boundary conditions.west.pressure=-5", ranks=ranks)
+            self.assertEqual(len(reported), 1, reported)
+            self.assertRegex(reported[0], "^warning: t = 0.333333: .*source_2d.xml: the pressure of the fluid is below 0 in places")
 
-    def test_rock_that_nothing_holds_is_told_once(self):
+    def test_rock_that_nothing_holds_is_reported_once(self):
         # the frame contracts, releases the block in it (ax, ay < 0), and grips it again
         scene, times = self.scene("contact/floating_2d.xml"), "Time.schedule={3, 3.75, 3.9, 4, 5}"
         words = "a piece of rock around (0.5, 0.5) (128 cells) can move along"
@@ -244,29 +244,29 @@ class Results(ProgramTest):
             self.assertEqual(len(lines), 1, err)
             self.assertIn("t = 3.75: " + words, lines[0])
             self.assertEqual(re.findall("^.*constrained again", out, re.MULTILINE), ["t = 5: all rock is constrained again"])
-            loose = {step["time"]: step["loose"] for step in self.results()["steps"] if "loose" in step}
-            self.assertEqual(list(loose), [3.75, 3.9, 4])
-            for text in loose.values():
+            floating = {step["time"]: step["floating"] for step in self.results()["steps"] if "floating" in step}
+            self.assertEqual(list(floating), [3.75, 3.9, 4])
+            for text in floating.values():
                 self.assertIn(words, text)
             for step in self.results()["steps"]:
-                self.assertNotIn("unsettled_faces", step)
+                self.assertNotIn("oscillating_faces", step)
 
     def test_faces_that_found_no_state(self):
         for ranks in (1, 2):
-            r = self.run_scene("contact/network_x.xml", "Solver.maximum iterations=3", "Time.maximum halvings=0", "Time.tethers=false",
+            r = self.run_scene("contact/network_x.xml", "Solver.maximum iterations=3", "Time.maximum halvings=0", "Time.proximal continuation=false",
                                ranks=ranks, expect=3)
-            told = {name: int(n) for n, name in re.findall(r'(\d+) of "(\w+)"', r["reason"])}
-            self.assertGreater(sum(told.values()), 0)
-            self.assertEqual(r["steps"][-1]["unsettled_faces"], sum(told.values()))
+            reported = {name: int(n) for n, name in re.findall(r'(\d+) of "(\w+)"', r["reason"])}
+            self.assertGreater(sum(reported.values()), 0)
+            self.assertEqual(r["steps"][-1]["oscillating_faces"], sum(reported.values()))
             names, counts, n_faces = sorted(r["steps"][0]["fractures"]), {}, 0
-            root = xml.etree.ElementTree.parse(self.folder / "out/unsettled.pvd").getroot()
+            root = xml.etree.ElementTree.parse(self.folder / "out/oscillating.pvd").getroot()
             step, = root.findall("./Collection/DataSet")
             self.assertEqual(float(step.get("timestep")), r["steps"][-2]["time"])
             parts = re.findall(r'Source="([^"]+)"', (self.folder / "out" / step.get("file")).read_text())
             self.assertEqual(len(parts), ranks)
             for part in parts:
                 path = self.folder / "out" / part
-                flags, fractures = cell_data(path, "unsettled"), cell_data(path, "fracture")
+                flags, fractures = cell_data(path, "oscillating"), cell_data(path, "fracture")
                 n_faces += len(flags)
                 self.assertLessEqual(set(flags), {0, 1})
                 for flag, fracture in zip(flags, fractures, strict=True):
@@ -274,27 +274,27 @@ class Results(ProgramTest):
                         counts[names[int(fracture)]] = counts.get(names[int(fracture)], 0) + 1
                 self.assertLessEqual(set(cell_data(path, "state")), {0, 1, 2})  # including the previous state
             self.assertEqual(n_faces, r["mesh"]["fracture_faces"])
-            self.assertEqual(counts, told)
+            self.assertEqual(counts, reported)
         self.run_scene("contact/network_x.xml", "Time.schedule={1}", QUIET)
-        self.assertEqual(list((self.folder / "out").glob("unsettled*")), [])  # from the other run
+        self.assertEqual(list((self.folder / "out").glob("oscillating*")), [])  # from the other run
 
     def test_much_friction_is_named_with_a_failure(self):
         slope = ("contact/incline_2d.xml", "Mesh.rotation=80", QUIET)
         note = "; the friction coefficient of"
-        for mu, told in ((1, False), ("1.5+x", False), (1.5, True)):
+        for mu, reported in ((1, False), ("1.5+x", False), (1.5, True)):
             r = self.run_scene(*slope, f"Materials.joint.friction coefficient={mu}", ranks=1 + (mu == 1.5), expect=3)
-            self.assertEqual(note in r["reason"], told, r["reason"])
+            self.assertEqual(note in r["reason"], reported, r["reason"])
         self.assertTrue(r["reason"].endswith(note + ' "joint" is 1.5: above about 1 equilibrium need not exist, nor be unique'))
-        shear = (str(ROOT / "docs/shear_test.xml"), "Solver.maximum iterations=2", "Time.maximum halvings=0", "Time.tethers=false", QUIET)
-        for angle, told in ((45, False), (60, True)):
+        shear = (str(ROOT / "docs/shear_test.xml"), "Solver.maximum iterations=2", "Time.maximum halvings=0", "Time.proximal continuation=false", QUIET)
+        for angle, reported in ((45, False), (60, True)):
             r = self.run_scene(*shear, f"Materials.rough joint.friction angle={angle}", expect=3)
-            self.assertEqual(note + ' "rough joint" is 1.732: ' in r["reason"], told, r["reason"])
+            self.assertEqual(note + ' "rough joint" is 1.732: ' in r["reason"], reported, r["reason"])
 
     def test_cuts_are_counted(self):
         # the sides follow the shear traction min(2/3 d_t, 0.18), so substeps are exact
         path = ["Time.schedule={1}", "Tables.tangential.arguments={0, 1}", "Tables.tangential.values={0, 0.5}",
                 "Tables.shear.arguments={0, 0.54, 1}", "Tables.shear.values={0, 0.18, 0.18}", "Solver.tolerance=1e-10"]
-        r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", "Time.maximum halvings=8", "Time.tethers=false", *path, QUIET)
+        r = self.run_scene("verification/cyclic_3d.xml", "Solver.maximum iterations=3", "Time.maximum halvings=8", "Time.proximal continuation=false", *path, QUIET)
         self.assertEqual(r["status"], "completed")
         self.assertGreater(r["steps"][0]["cuts"], 0)
         self.assertGreater(r["steps"][0]["substeps"], 1)

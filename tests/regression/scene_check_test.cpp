@@ -20,7 +20,7 @@ long n_lines(const std::string& text) { return std::count(text.begin(), text.end
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
-TEST(SceneCheck, AHostIsToldEverythingAtOnce) {
+TEST(SceneCheck, AHostIsReportedEverythingAtOnce) {
   auto scene = read_scene("seed/push_2d.xml");
   EXPECT_EQ(error_of(scene), "");
   scene.origin = "host";

@@ -23,7 +23,7 @@ Real difference_of(const Run& a, const Run& b, int block) {
   return d.normInf() / a.model->state()[block]->normInf();
 }
 
-TEST(LinearSolvers, GiveTheSameAnswer) {
+TEST(LinearSolvers, GiveTheSameSolution) {
   for (const std::string name : {"verification/crossing_3d.xml", "seed/immersed_3d.xml"}) {
     SCOPED_TRACE(name);
     const std::string mesh =
@@ -171,7 +171,7 @@ TEST(StepCuts, ReachTheEndOfTheStep) {
   few.push_back("Solver.maximum iterations=3");
   few.push_back("Solver.tolerance=1e-10");
   few.push_back("Time.maximum halvings=8");
-  few.push_back("Time.tethers=false");
+  few.push_back("Time.proximal continuation=false");
   const auto whole = run(name, path, 1), cut = run(name, few, 1);
   ASSERT_TRUE(whole.report.converged);
   EXPECT_EQ(whole.report.cuts, 0);

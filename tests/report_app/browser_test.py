@@ -38,7 +38,7 @@ class BrowserTest(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         log = (BUNDLED / "npm.log").read_text() if (BUNDLED / "npm.log").is_file() else ""
         if "no 3D view" in done.stderr and "npm err" in log.lower():
-            self.skipTest(f"npm brought no library: {log.strip().splitlines()[-1]}")
+            self.skipTest(f"npm installed no library: {log.strip().splitlines()[-1]}")
         self.assertEqual(done.stderr.replace("sprekk: bundling the 3D view of reports\n", ""), "")
         return Path(done.stdout.strip())
 

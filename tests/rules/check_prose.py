@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-MOST_WHAT, MOST_RELATIVE, MOST_P90, MOST_LONG, MOST_WIDTH = 15, 3.0, 30, 0.03, 120
+MAX_WHAT, MAX_RELATIVE, MAX_P90, MAX_LONG, MAX_WIDTH = 15, 3.0, 30, 0.03, 120
 RELATIVE = {"what", "whatever", "which", "whichever", "that", "those", "such", "one", "ones", "whose", "where"}
 
 
@@ -32,7 +32,7 @@ def sentences(text):
 
 def long_lines(text):
     outside = re.sub(r"```.*?```", lambda block: "\n" * block[0].count("\n"), text, flags=re.DOTALL)
-    return [k for k, line in enumerate(outside.splitlines(), 1) if len(line) > MOST_WIDTH and not line.startswith("|")]
+    return [k for k, line in enumerate(outside.splitlines(), 1) if len(line) > MAX_WIDTH and not line.startswith("|")]
 
 
 def counts(found):
@@ -54,13 +54,13 @@ def main():
         text = page.read_text()
         found = sentences(text)
         whole += found
-        wrong += [f"{page.relative_to(root)}:{line}: more than {MOST_WIDTH} characters" for line in long_lines(text)]
+        wrong += [f"{page.relative_to(root)}:{line}: more than {MAX_WIDTH} characters" for line in long_lines(text)]
         if "--pages" in sys.argv:
             print(f"{page.relative_to(root)}: " + ", ".join(f"{value:.3g} {name}" for name, value in counts(found).items()))
-    for (name, value), most in zip(counts(whole).items(), (MOST_WHAT, MOST_RELATIVE, MOST_P90, MOST_LONG)):
-        print(f"{name}: {value:.3g}, at most {most}")
-        if value > most:
-            wrong.append(f"{name}: {value:.3g} exceeds {most}")
+    for (name, value), maximum in zip(counts(whole).items(), (MAX_WHAT, MAX_RELATIVE, MAX_P90, MAX_LONG)):
+        print(f"{name}: {value:.3g}, at most {maximum}")
+        if value > maximum:
+            wrong.append(f"{name}: {value:.3g} exceeds {maximum}")
     print(*wrong, sep="\n")
     return 1 if wrong else 0
 

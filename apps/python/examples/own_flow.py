@@ -13,7 +13,7 @@ from sprekk import Block, Module, Unknown
 COMM = MPI.COMM_WORLD
 E, NU, ALPHA = 10e9, 0.25, 0.8  # Pa
 MOBILITY, STORAGE, VISCOSITY = 1e-12, 2e-10, 1e-3  # m^2/(Pa s), 1/Pa, Pa s
-APERTURE, LEAST, INJECTION, DT = 2e-4, 1e-5, 1e-6, 10  # m, m, m/s^2, s
+APERTURE, MINIMUM, INJECTION, DT = 2e-4, 1e-5, 1e-6, 10  # m, m, m/s^2, s
 
 
 class OwnFlow(Module):
@@ -23,7 +23,7 @@ class OwnFlow(Module):
     storage     1/M at constant strain, 1/Pa
     viscosity   Pa s
     aperture    initial value, m
-    least       lower bound of the aperture, m
+    minimum       lower bound of the aperture, m
     injection   into fractures, growth rate of the flux, m/s^2
 
     | row           | of                     |                                                        |
@@ -38,9 +38,9 @@ class OwnFlow(Module):
     histories = {"old pressure": ("cell", 1), "old widening": ("fracture face", 1)}
     stores = True
 
-    def __init__(self, mobility, storage, viscosity, aperture, least, injection):
+    def __init__(self, mobility, storage, viscosity, aperture, minimum, injection):
         self.mobility, self.storage, self.viscosity = mobility, storage, viscosity
-        self.aperture, self.least, self.injection = aperture, least, injection
+        self.aperture, self.minimum, self.injection = aperture, minimum, injection
 
     def blocks(self, mesh):
         corners = mesh.coordinates[mesh.corners]
@@ -70,7 +70,7 @@ class OwnFlow(Module):
 
     def fracture(self, x, state):
         p, b = x["face pressure"], x["widening"][:, 0]  # face, then its two ends
-        a = np.maximum(self.aperture + b, self.least)
+        a = np.maximum(self.aperture + b, self.minimum)
         q = (a**3 / (12 * self.viscosity) * 2 / self.area)[:, None] * (p[:, :1] - p[:, 1:])
         gains = np.zeros(len(b))
         old = state.histories["old widening"][:, 0]
@@ -89,7 +89,7 @@ def block(n, flow):
     h, first = 1 / n, n // 4
     rock = {"type": "elastic", "Young's modulus": E, "Poisson's ratio": NU, "Biot coefficient": ALPHA}
     joint = {"type": "joint", "friction coefficient": 0.3, "tangential stiffness": "20 GPa/m",
-             "initial aperture": APERTURE, "residual aperture": LEAST}
+             "initial aperture": APERTURE, "residual aperture": MINIMUM}
     fracture = {"material": "joint"}
     scene = {
         "Mesh": {"cell": "quadrilateral", "lower corner": [0, 0], "upper corner": [1, 1], "cells": [n, n],
@@ -116,7 +116,7 @@ def distance(a, b):
 
 def together(n):
     """Returns a model of the block with the flow of the host in the same Jacobian."""
-    flow = OwnFlow(MOBILITY, STORAGE, VISCOSITY, APERTURE, LEAST, INJECTION)
+    flow = OwnFlow(MOBILITY, STORAGE, VISCOSITY, APERTURE, MINIMUM, INJECTION)
     return sprekk.Model(block(n, flow=False), COMM, own_pressure=0, modules=[flow])
 
 

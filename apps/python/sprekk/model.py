@@ -282,8 +282,8 @@ class Model:
         except Exception as error:
             raised = error
         if callback and self.comm.size > 1:
-            told = self.comm.allgather(None if raised is None else f"{type(raised).__name__}: {raised}")
-            wrong = [f"rank {rank}: {text}" for rank, text in enumerate(told) if text is not None]
+            reported = self.comm.allgather(None if raised is None else f"{type(raised).__name__}: {raised}")
+            wrong = [f"rank {rank}: {text}" for rank, text in enumerate(reported) if text is not None]
             if wrong and raised is None:
                 raise _sprekk.Error(f"the callback failed on another rank: {wrong[0]}")
         if raised is not None:

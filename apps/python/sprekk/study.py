@@ -35,10 +35,10 @@ def sweep(scene, parameters, measure, *, processes=None, folder=None, progress=F
     cases = combinations(parameters)
     name = measure if isinstance(measure, str) else name_of(measure)
     with tempfile.TemporaryDirectory() as scratch:
-        kept = Path(folder) if folder else Path(scratch)
-        kept.mkdir(parents=True, exist_ok=True)
+        target = Path(folder) if folder else Path(scratch)
+        target.mkdir(parents=True, exist_ok=True)
         with ThreadPoolExecutor(processes or len(os.sched_getaffinity(0))) as pool:
-            rows = pool.map(lambda case: run_case(base, case, name, kept), cases)
+            rows = pool.map(lambda case: run_case(base, case, name, target), cases)
             if progress:
                 from tqdm import tqdm
                 rows = tqdm(rows, total=len(cases))
@@ -87,10 +87,10 @@ def source_of(measure):
 
 def surroundings():
     """Returns the environment of an independent process, with the import path of this one and without its MPI rank."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_", "PMI_"))}
-    kept.update({name: value for name, value in os.environ.items() if name.startswith(("OMPI_MCA_pml", "OMPI_MCA_btl",
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_", "PMI_"))}
+    environment.update({name: value for name, value in os.environ.items() if name.startswith(("OMPI_MCA_pml", "OMPI_MCA_btl",
                                                                                        "OMPI_ALLOW"))})
-    return {**kept, "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
+    return {**environment, "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
 
 
 def function_of(name):

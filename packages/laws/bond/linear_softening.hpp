@@ -60,11 +60,11 @@ struct SofteningBond {
     return {shear * left, T(0), at.separation < parted ? T(tension * at.separation / parted) : tension, !(tensile > 0)};
   }
 
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    const bool apart = kept[0] > 0 || at.open || at.lambda_n >= (1 - rounding) * cohesion(at).strength;
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    const bool apart = history[0] > 0 || at.open || at.lambda_n >= (1 - rounding) * cohesion(at).strength;
     const Real parted = at.separation;
-    if (apart && parted * use(tensile, energy) > rounding && parted > kept[0]) kept[0] = parted;
-    kept[1] += at.slip_of_step;
+    if (apart && parted * use(tensile, energy) > rounding && parted > history[0]) history[0] = parted;
+    history[1] += at.slip_of_step;
   }
 
  private:

@@ -38,8 +38,8 @@ struct BartonBandisCycles : BartonBandisClosure {
     if (!(at.lambda_n > largest.lambda_n)) return now;
     return (1 - retained) * now + retained * BartonBandisClosure::opening(largest);
   }
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    if (-at.lambda_n > kept[0]) kept[0] = -at.lambda_n;
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    if (-at.lambda_n > history[0]) history[0] = -at.lambda_n;
   }
 };
 

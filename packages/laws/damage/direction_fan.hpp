@@ -29,31 +29,31 @@ class DirectionFan {
   };
 
   /// Reads numbers written by write().
-  KOKKOS_INLINE_FUNCTION explicit DirectionFan(const History& kept) : size_(size_of(kept)) {
-    for (int j = 0; j < size_; ++j) nodes_[j] = node(kept, j);
+  KOKKOS_INLINE_FUNCTION explicit DirectionFan(const History& history) : size_(size_of(history)) {
+    for (int j = 0; j < size_; ++j) nodes_[j] = node(history, j);
   }
   /// Writes at most n_numbers numbers.
-  KOKKOS_INLINE_FUNCTION void write(const Numbers<Real>& kept) const {
-    kept[0] = size_;
+  KOKKOS_INLINE_FUNCTION void write(const Numbers<Real>& history) const {
+    history[0] = size_;
     for (int j = 0; j < size_; ++j) {
       const Node& n = nodes_[j];
       const Real numbers[] = {n.angle, n.value, n.curvature, n.low, n.high};
-      for (int i = 0; i < 5; ++i) kept[1 + 5 * j + i] = numbers[i];
+      for (int i = 0; i < 5; ++i) history[1 + 5 * j + i] = numbers[i];
     }
   }
 
   /// Returns the stored Lambda near the direction of (u, v).
-  KOKKOS_INLINE_FUNCTION static Form form(const History& kept, Real u, Real v) {
+  KOKKOS_INLINE_FUNCTION static Form form(const History& history, Real u, Real v) {
     using std::atan2, std::cos, std::sin;
-    const int size = size_of(kept);
+    const int size = size_of(history);
     if (size == 0) return {};
     const Real t = wrapped(atan2(v, u));
     int j = 0;  // last node with an angle <= t
     for (int end = size; end - j > 1;) {
       const int middle = (j + end) / 2;
-      (node(kept, middle).angle <= t ? j : end) = middle;
+      (node(history, middle).angle <= t ? j : end) = middle;
     }
-    const Node first = node(kept, j), second = node(kept, j + 1 < size ? j + 1 : 0);
+    const Node first = node(history, j), second = node(history, j + 1 < size ? j + 1 : 0);
     const Real half = (second.angle - first.angle + (j + 1 < size ? 0 : turn)) / 2, c = first.angle + half;
     const Real along = ((first.value + second.value) / 2 - first.curvature) / cos(half),
                across = (second.value - first.value) / (2 * sin(half));
@@ -83,14 +83,14 @@ class DirectionFan {
 
   /// Error bound over all directions; largest value at an angle of the table.
   KOKKOS_INLINE_FUNCTION Real error() const {
-    Real most = 0;
-    for (int j = 0; j < size_; ++j) most = larger(most, larger(nodes_[j].high, -nodes_[j].low));
-    return most;
+    Real maximum = 0;
+    for (int j = 0; j < size_; ++j) maximum = larger(maximum, larger(nodes_[j].high, -nodes_[j].low));
+    return maximum;
   }
   KOKKOS_INLINE_FUNCTION Real largest() const {
-    Real most = 0;
-    for (int j = 0; j < size_; ++j) most = larger(most, nodes_[j].value);
-    return most;
+    Real maximum = 0;
+    for (int j = 0; j < size_; ++j) maximum = larger(maximum, nodes_[j].value);
+    return maximum;
   }
 
  private:
@@ -128,9 +128,11 @@ class DirectionFan {
   KOKKOS_INLINE_FUNCTION int next(int j) const { return j + 1 < size_ ? j + 1 : 0; }
   KOKKOS_INLINE_FUNCTION static Real larger(Real a, Real b) { return a > b ? a : b; }
   KOKKOS_INLINE_FUNCTION static Real smaller(Real a, Real b) { return a < b ? a : b; }
-  KOKKOS_INLINE_FUNCTION static int size_of(const History& kept) { return kept[0] < 4 ? 0 : static_cast<int>(kept[0]); }
-  KOKKOS_INLINE_FUNCTION static Node node(const History& kept, int j) {
-    const auto own = kept.from(1 + 5 * j);
+  KOKKOS_INLINE_FUNCTION static int size_of(const History& history) {
+    return history[0] < 4 ? 0 : static_cast<int>(history[0]);
+  }
+  KOKKOS_INLINE_FUNCTION static Node node(const History& history, int j) {
+    const auto own = history.from(1 + 5 * j);
     return {own[0], own[1], own[2], own[3], own[4]};
   }
   KOKKOS_INLINE_FUNCTION static Real wrapped(Real t) {  // from (-2 pi, 4 pi) to [0, 2 pi)

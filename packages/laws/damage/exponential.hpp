@@ -35,7 +35,7 @@ struct ExponentialDecay {
   }
 
   template <class Law>
-  static std::vector<Quantity<Law>> told() {
+  static std::vector<Quantity<Law>> reported() {
     return {{"damage of friction", "-", "the part of its bound that slip has worn",
              [](const Law& law, const Contact<Real>& at) { return 1 - law.left(at).friction; }},
             {"damage of dilation", "-", "the part of its opening that slip has worn",
@@ -56,7 +56,7 @@ struct IsotropicDamage : ExponentialDecay {
   static constexpr const char *name = "isotropic", *meaning = "wear by slip in any direction";
   static std::vector<Parameter<IsotropicDamage>> parameters() { return entries<IsotropicDamage>(); }
   static std::vector<Quantity<IsotropicDamage>> quantities() {
-    auto all = told<IsotropicDamage>();
+    auto all = reported<IsotropicDamage>();
     all.push_back({"damage history", "m", "what slip has worn, Lambda",
                    [](const IsotropicDamage&, const Contact<Real>& at) -> Real { return at.history[0]; }});
     return all;
@@ -66,8 +66,8 @@ struct IsotropicDamage : ExponentialDecay {
   KOKKOS_INLINE_FUNCTION Left<T> left(const Contact<T>& at) const {
     return after(T(at.history[0] + at.wear * at.slip_of_step));
   }
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    kept[0] += at.wear * at.slip_of_step;
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    history[0] += at.wear * at.slip_of_step;
   }
 };
 
@@ -87,7 +87,7 @@ struct AnisotropicDamage : ExponentialDecay {
                               *meaning = "wear by slip on the side of the present plastic jump (White 2014)";
   static std::vector<Parameter<AnisotropicDamage>> parameters() { return entries<AnisotropicDamage>(); }
   static std::vector<Quantity<AnisotropicDamage>> quantities() {
-    auto all = told<AnisotropicDamage>();
+    auto all = reported<AnisotropicDamage>();
     all.push_back({"damage history", "m", "what slip has worn on the side of the present plastic jump, Lambda",
                    [](const AnisotropicDamage& law, const Contact<Real>& at) { return law.history(at); }});
     all.push_back({"error of damage history", "-", "a bound of it, over the largest Lambda of all directions",
@@ -105,19 +105,19 @@ struct AnisotropicDamage : ExponentialDecay {
     const T share = width() < std::numeric_limits<Real>::infinity() ? T((u / width() + 1) / 2) : T(1);
     return between(after(history_of_side(at, 1)), after(history_of_side(at, 0)), share);
   }
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
     const auto &u = at.plastic_jump, &before = at.last_plastic_jump;
     if (at.dim == 3) {
-      kept[0] += at.wear * at.slip_of_step;
+      history[0] += at.wear * at.slip_of_step;
       DirectionFan fan(at.history.from(1));
       fan.add(before, u, at.wear);
-      fan.write(kept.from(1));
+      fan.write(history.from(1));
       return;
     }
     const auto positive = [](Real x) { return x > 0 ? x : 0; };
     for (const int side : {0, 1}) {
       const Real m = side == 0 ? 1 : -1;
-      kept[side] += at.wear * std::abs(positive(m * u[0]) - positive(m * before[0]));
+      history[side] += at.wear * std::abs(positive(m * u[0]) - positive(m * before[0]));
     }
   }
 

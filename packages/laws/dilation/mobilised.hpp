@@ -51,13 +51,13 @@ struct MobilisedDilation {
     const T moved = at.plastic_slip - sqrt(old[0] * old[0] + old[1] * old[1]);
     T angle = 0;  // d/f, radians
     const T N = -at.lambda_n;
-    const Real least = 1e-6 * wall_strength;  // constant angle below this compression
-    if (N < wall_strength) angle = degree * roughness / damage * (N > least ? T(log10(wall_strength / N)) : T(6));
+    const Real minimum = 1e-6 * wall_strength;  // constant angle below this compression
+    if (N < wall_strength) angle = degree * roughness / damage * (N > minimum ? T(log10(wall_strength / N)) : T(6));
     return at.history[1] + moved * mean_tangent(at.history[0] / peak_slip, T(at.rubs * at.slip_of_step), angle);
   }
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    kept[1] = opening(at);
-    kept[0] += at.rubs * at.slip_of_step;
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    history[1] = opening(at);
+    history[0] += at.rubs * at.slip_of_step;
   }
 
  private:

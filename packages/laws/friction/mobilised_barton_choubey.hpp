@@ -51,8 +51,8 @@ struct MobilisedBartonChoubeyFriction : BartonChoubeyFriction {
     }
     return N * tan(degree * (residual_angle * of_friction(x) + rough * of_roughness(x)));
   }
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    kept[0] += at.rubs * at.slip_of_step;
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    history[0] += at.rubs * at.slip_of_step;
   }
 };
 

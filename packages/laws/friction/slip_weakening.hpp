@@ -44,8 +44,8 @@ struct SlipWeakeningFriction {
     if (!(left > 0)) return -residual * at.lambda_n;
     return -(residual + (peak - residual) * left) * at.lambda_n;
   }
-  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    kept[0] += at.rubs * at.slip_of_step;
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    history[0] += at.rubs * at.slip_of_step;
   }
 };
 

@@ -29,14 +29,14 @@ void Flow::Rock::check(base::Section& s) const {
 bool Flow::Rock::flows_uniformly() const { return transport::is_uniform_tensor(permeability); }
 
 transport::Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const {
-  const Real room = value_at("porosity", porosity, base::between(0, 1), x), least = room * of_fluid;
+  const Real room = value_at("porosity", porosity, base::between(0, 1), x), minimum = room * of_fluid;
   if (!biot_modulus) return {.room = room, .growth = compressibility.value_or(0)};
   const auto here = porosity.is_constant() ? "" : fmt::format(" at ({}, {}, {})", x[0], x[1], x[2]);
-  SPREKK_CHECK(least <= (1 + 1e-12) / *biot_modulus,
+  SPREKK_CHECK(minimum <= (1 + 1e-12) / *biot_modulus,
                "\"Biot modulus\": is {:.6g} Pa, must not be above {:.6g} Pa{}, the value of \"porosity\" and "
                "\"compressibility\" of the fluid without compressibility of pores",
-               *biot_modulus, 1 / least, here);
-  return {.room = room, .growth = std::max(Real(0), 1 / *biot_modulus - least)};
+               *biot_modulus, 1 / minimum, here);
+  return {.room = room, .growth = std::max(Real(0), 1 / *biot_modulus - minimum)};
 }
 
 bool Flow::Rock::may_store(Real of_fluid) const {

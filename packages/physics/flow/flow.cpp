@@ -50,7 +50,7 @@ std::vector<transport::Well> wells_in(const Scene& scene, int dim) {
 
 /// Least distance of the sides of a joint under any compression, m. Dilation laws with a history have no bound, because
 /// reversed slip may close the joint further than slip has opened it.
-Real least_opening(const Material& joint, const std::array<Real, 3>& x) {
+Real min_opening(const Material& joint, const std::array<Real, 3>& x) {
   constexpr Real any_compression = 1e100;  // Pa
   const Real zero = 0;                     // all history variables
   const auto law = joint.joint(x).law;
@@ -67,7 +67,7 @@ transport::FractureFlowParameters::Face hydraulics(const Material& joint, Real v
   const Real aperture = value_at("initial aperture", joint.initial_aperture, base::at_least(0), x),
              residual = value_at("residual aperture", joint.residual_aperture, base::at_least(0), x),
              a = std::max(aperture, residual),
-             of_iterates = opening ? part * std::max(Real(0), aperture + least_opening(joint, x)) : 0;
+             of_iterates = opening ? part * std::max(Real(0), aperture + min_opening(joint, x)) : 0;
   SPREKK_CHECK(a > 0,
                "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
                "or a \"residual aperture\"",
@@ -241,7 +241,7 @@ std::vector<StartAperture> start_apertures(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   std::vector<StartAperture> apertures;
   if (scene.flow) {
-    for (const auto& face : hydraulics(setting)) apertures.push_back({face.along.aperture, face.along.least});
+    for (const auto& face : hydraulics(setting)) apertures.push_back({face.along.aperture, face.along.minimum});
     return apertures;
   }
   const auto openings = openings_of(setting);
@@ -270,7 +270,7 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
       .fluid = darcy.fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change};
   for (const auto& face : fractures.faces) {
     in_fractures.aperture.push_back(deforms ? face.along.aperture : face.along.mechanical_aperture());
-    in_fractures.least.push_back(face.along.least);
+    in_fractures.minimum.push_back(face.along.minimum);
   }
   const auto fluid = darcy.fluid;
   for (const auto& carried : all_carried) {

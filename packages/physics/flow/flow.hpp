@@ -141,7 +141,7 @@ base::Expression initial_pressure(const Scene& scene);
 
 /// Initial mechanical aperture (15) of a fracture face without its lower bound, and this bound (residual aperture), m.
 struct StartAperture {
-  Real value, least;
+  Real value, minimum;
 };
 /// Initial apertures of local fracture faces. Collective.
 std::vector<StartAperture> start_apertures(const Setting& setting);

@@ -23,21 +23,21 @@ namespace {
 /// | r      | n_rows               | W, m^3/s       | c A q (T - T_old), then -beta A q (T - T_old) |
 /// | area   | [local face]         | m^2            | (2D: m)                                    |
 /// | factor | [local face, n_rows] | J/(m^3 K), 1/K | c, -beta                                   |
-/// | kept   | [owned face, 3]      | K, m, m        | T_old, m_old, m_older                      |
+/// | saved   | [owned face, 3]      | K, m, m        | T_old, m_old, m_older                      |
 template <int n_rows>
 struct Filling {
   using Columns = assembly::Slots<Slot<1, 1>>;
   using Rows = std::conditional_t<n_rows == 2, assembly::Slots<Slot<1, 1>, Slot<1, 1>>, Columns>;
   ConstView<Real*> area;
   ConstView<Real**> factor;
-  View<Real**> kept;
+  View<Real**> saved;
   Real now = 0, before = 0;
 
   KOKKOS_INLINE_FUNCTION Real per_kelvin(int f, int k) const {
-    return factor(f, k) * area(f) * (now * kept(f, 1) + before * (kept(f, 1) - kept(f, 2)));
+    return factor(f, k) * area(f) * (now * saved(f, 1) + before * (saved(f, 1) - saved(f, 2)));
   }
   KOKKOS_INLINE_FUNCTION void residual(int f, const Real (&x)[1], Real (&r)[n_rows]) const {
-    for (int k = 0; k < n_rows; ++k) r[k] = per_kelvin(f, k) * (x[0] - kept(f, 0));
+    for (int k = 0; k < n_rows; ++k) r[k] = per_kelvin(f, k) * (x[0] - saved(f, 0));
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int f, const Real (&)[1], Real (&J)[n_rows][1]) const {
     for (int k = 0; k < n_rows; ++k) J[k][0] = per_kelvin(f, k);
@@ -95,19 +95,19 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
   }
 
   void initial_history(const std::vector<View<Real**>>& history) const override {
-    const base::HostTable<Real**> kept(history[0]);
+    const base::HostTable<Real**> saved(history[0]);
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      kept(f, 0) = start(f, parameters_.initial);
-      kept(f, 1) = parameters_.faces[f].at_start() * density_at(start(f, parameters_.initial_pressure), kept(f, 0));
-      kept(f, 2) = kept(f, 1);
+      saved(f, 0) = start(f, parameters_.initial);
+      saved(f, 1) = parameters_.faces[f].at_start() * density_at(start(f, parameters_.initial_pressure), saved(f, 0));
+      saved(f, 2) = saved(f, 1);
     }
-    kept.on_device();
+    saved.on_device();
   }
 
   void commit(assembly::State& state) const override {
-    const auto kept = state.history[0];
+    const auto saved = state.history[0];
     const auto facet = facet_;
-    const auto aperture = aperture_, least = least_;
+    const auto aperture = aperture_, minimum = minimum_;
     const auto T = state.x[temperature_];
     const auto p = pressure_ < 0 ? ConstView<Real*>() : state.x[pressure_];
     const auto widening = widening_ < 0 ? ConstView<Real*>() : state.x[widening_];
@@ -115,17 +115,17 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
     const bool flows = pressure_ >= 0, widens = widening_ >= 0, changes = parameters_.change.has_value();
     const auto response = changes ? parameters_.change->response : laws::FluidResponse();
     Kokkos::parallel_for(
-        "filling", Kokkos::RangePolicy<Execution>(0, kept.extent(0)), KOKKOS_LAMBDA(int f) {
+        "filling", Kokkos::RangePolicy<Execution>(0, saved.extent(0)), KOKKOS_LAMBDA(int f) {
           const Real a = aperture(f) + (widens ? widening(f) : 0);
-          kept(f, 0) = T(facet(f));
-          kept(f, 2) = kept(f, 1);
-          kept(f, 1) = (a > least(f) ? a : least(f)) * (flows ? fluid.density(p(facet(f))) : 1) *
-                       (changes ? response.density(kept(f, 0)).value : 1);
+          saved(f, 0) = T(facet(f));
+          saved(f, 2) = saved(f, 1);
+          saved(f, 1) = (a > minimum(f) ? a : minimum(f)) * (flows ? fluid.density(p(facet(f))) : 1) *
+                        (changes ? response.density(saved(f, 0)).value : 1);
         });
   }
 
  private:
-  using Conduction = transport::KeptFlow<n, assembly::Slots<Slot<1 + n, 1>>>;
+  using Conduction = transport::StoredFlow<n, assembly::Slots<Slot<1 + n, 1>>>;
   using ConductionAssembler = assembly::Assembler<Conduction>;
   using FillingAssembler = assembly::Assembler<Filling<expands ? 2 : 1>>;
 
@@ -142,7 +142,7 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
 
   Filling<expands ? 2 : 1> filling(const assembly::State& state) const {
     auto op = filling_;
-    op.kept = state.history[0];
+    op.saved = state.history[0];
     op.now = state.rate;
     op.before = state.before;
     return op;
@@ -168,13 +168,13 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
   }
 
   void set_filling() {
-    std::vector<Real> area, aperture, least;
+    std::vector<Real> area, aperture, minimum;
     std::vector<LocalIndex> facet;
     const base::HostTable<Real**> factors("factor", parameters_.faces.size(), expands ? 2 : 1);
     for (std::size_t f = 0; f < parameters_.faces.size(); ++f) {
       area.push_back(mesh_->fracture_faces[f].area);
       aperture.push_back(parameters_.faces[f].aperture);
-      least.push_back(parameters_.faces[f].least);
+      minimum.push_back(parameters_.faces[f].minimum);
       facet.push_back(mesh_->facets->fracture_face[f]);
       factors(f, 0) = parameters_.faces[f].capacity;
       if (expands) factors(f, 1) = -parameters_.expansion;
@@ -182,14 +182,14 @@ class FractureHeat final : public assembly::Module, public assembly::InitialValu
     filling_.area = assembly::to_device(area, "area");
     filling_.factor = factors.on_device();
     aperture_ = assembly::to_device(aperture, "aperture");
-    least_ = assembly::to_device(least, "least aperture");
+    minimum_ = assembly::to_device(minimum, "residual aperture");
     facet_ = assembly::to_device(facet, "facet");
   }
 
   FractureHeatParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
   int temperature_ = -1, pressure_ = -1, widening_ = -1;  // blocks of face temperature, face pressure, widening
-  ConstView<Real*> aperture_, least_;                     // [local fracture face] a_0, residual aperture, m
+  ConstView<Real*> aperture_, minimum_;                   // [local fracture face] a_0, residual aperture, m
   ConstView<LocalIndex*> facet_;                          // [local fracture face]
   Conduction conduction_;
   Filling<expands ? 2 : 1> filling_;

@@ -17,10 +17,10 @@ struct FractureHeatParameters {
   /// Thermal data of one fracture face.
   struct Face {
     Real aperture;      ///< initial aperture a_0, m
-    Real least;         ///< residual aperture, m
+    Real minimum;       ///< residual aperture, m
     Real conductivity;  ///< of the filling, W/(m K)
     Real capacity;      ///< rho c of the filling at reference conditions, J/(m^3 K)
-    Real at_start() const { return aperture > least ? aperture : least; }
+    Real at_start() const { return aperture > minimum ? aperture : minimum; }
   };
   std::vector<Face> faces = {};  ///< [local fracture face]
   transport::FluxScheme scheme = transport::FluxScheme::rt0;

@@ -77,7 +77,7 @@ bool is_any(const mesh::Mesh& mesh, const fields::Properties<Real>& property) {
 std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   const auto apertures = start_apertures(setting);
-  const Real least = 1e-9 * mesh::largest_extent(mesh);  // ridges of closed fractures then conduct heat
+  const Real minimum = 1e-9 * mesh::largest_extent(mesh);  // ridges of closed fractures then conduct heat
   std::vector<FractureHeatParameters::Face> faces;
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
     for (std::size_t f = 0; f < apertures.size(); ++f) {
@@ -86,7 +86,7 @@ std::vector<FractureHeatParameters::Face> fillings(const Setting& setting) {
       faces.push_back(at_place(scene, joint, [&]() -> FractureHeatParameters::Face {
         const auto& own = joint.filling_heat_capacity;
         return {.aperture = apertures[f].value,
-                .least = std::max(least, apertures[f].least),
+                .minimum = std::max(minimum, apertures[f].minimum),
                 .conductivity = value_at(conductivity_name, joint.filling_conductivity, base::positive(), x),
                 .capacity = own          ? value_at(capacity_name, *own, base::at_least(0), x)
                             : scene.flow ? scene.heat->fluid_capacity.value_or(0)
@@ -116,10 +116,10 @@ std::vector<GivenTemperature> given_temperatures(const Scene& scene, const mesh:
 /// Collective.
 std::vector<GivenTemperature> given_rates(const Scene& scene, const mesh::Mesh& mesh,
                                           const fields::Properties<laws::Mobility>& conductivity) {
-  Real least = std::numeric_limits<Real>::infinity();
+  Real minimum = std::numeric_limits<Real>::infinity();
   for (const auto& each : conductivity.values)
-    for (int i = 0; i < mesh.dim(); ++i) least = std::min(least, each.value[i][i]);
-  const Real size = mesh::largest_extent(mesh), per_flux = size / -base::max_over_ranks(*mesh.comm, -least);
+    for (int i = 0; i < mesh.dim(); ++i) minimum = std::min(minimum, each.value[i][i]);
+  const Real size = mesh::largest_extent(mesh), per_flux = size / -base::max_over_ranks(*mesh.comm, -minimum);
   std::vector<GivenTemperature> all;
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (condition.heat_flux)

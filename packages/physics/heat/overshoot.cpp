@@ -13,8 +13,8 @@ namespace {
 
 using mesh::Vector;
 
-constexpr Real tolerance = 1e-3;         // relative to the range of given temperatures
-constexpr std::size_t most_times = 128;  // number of times at which time-dependent temperatures are evaluated
+constexpr Real tolerance = 1e-3;        // relative to the range of given temperatures
+constexpr std::size_t max_times = 128;  // number of times at which time-dependent temperatures are evaluated
 
 struct Range {
   Real low = std::numeric_limits<Real>::infinity(), high = -low;
@@ -80,9 +80,9 @@ Range given_range(const std::vector<GivenTemperature>& all, const mesh::Mesh& me
   return range;
 }
 
-/// At most most_times of the times at equal intervals, including the last one.
+/// At most max_times of the times at equal intervals, including the last one.
 std::vector<Real> some_of(const std::vector<Real>& times) {
-  const std::size_t every = (times.size() + most_times - 1) / most_times;
+  const std::size_t every = (times.size() + max_times - 1) / max_times;
   std::vector<Real> some;
   for (std::size_t k = 0; k < times.size(); k += every) some.push_back(times[times.size() - 1 - k]);
   return some;

@@ -122,16 +122,16 @@ class ThermalStress final : public assembly::Module, public assembly::Loads {
 /// | x      | 1               | K        | T of the cell                        |
 /// | r      | 1               | m^3/s    | -rate V beta (T - T_old)             |
 /// | room   | [local cell]    | m^3/K    | V beta                               |
-/// | kept   | [owned cell, 1] | K        | T_old                                |
+/// | saved   | [owned cell, 1] | K        | T_old                                |
 struct Expansion {
   using Columns = assembly::Slots<Slot<1, 1>>;
   using Rows = Columns;
   ConstView<Real*> room;
-  View<Real**> kept;
+  View<Real**> saved;
   Real rate = 0;
 
   KOKKOS_INLINE_FUNCTION void residual(int c, const Real (&x)[1], Real (&r)[1]) const {
-    r[0] = c < static_cast<int>(kept.extent(0)) ? -room(c) * rate * (x[0] - kept(c, 0)) : 0;  // else a ghost
+    r[0] = c < static_cast<int>(saved.extent(0)) ? -room(c) * rate * (x[0] - saved(c, 0)) : 0;  // else a ghost
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int c, const Real (&)[1], Real (&J)[1][1]) const { J[0][0] = -room(c) * rate; }
 };
@@ -173,15 +173,15 @@ class PoreExpansion final : public assembly::Module, public assembly::InitialVal
   }
 
   void initial_history(const std::vector<View<Real**>>& history) const override {
-    const base::HostTable<Real**> kept(history[0]);
-    for (std::size_t c = 0; c < kept.extent(0); ++c) kept(c, 0) = initial_[c];
-    kept.on_device();
+    const base::HostTable<Real**> saved(history[0]);
+    for (std::size_t c = 0; c < saved.extent(0); ++c) saved(c, 0) = initial_[c];
+    saved.on_device();
   }
   void commit(assembly::State& state) const override {
-    const auto kept = state.history[0];
+    const auto saved = state.history[0];
     const auto T = state.x[temperature_];
     Kokkos::parallel_for(
-        "keep", Kokkos::RangePolicy<Execution>(0, kept.extent(0)), KOKKOS_LAMBDA(int c) { kept(c, 0) = T(c); });
+        "keep", Kokkos::RangePolicy<Execution>(0, saved.extent(0)), KOKKOS_LAMBDA(int c) { saved(c, 0) = T(c); });
   }
 
  private:
@@ -189,7 +189,7 @@ class PoreExpansion final : public assembly::Module, public assembly::InitialVal
 
   Expansion at(const assembly::State& state) const {
     auto op = op_;
-    op.kept = state.history[0];
+    op.saved = state.history[0];
     op.rate = state.rate;
     return op;
   }

@@ -130,7 +130,7 @@ class BulkMomentum final : public assembly::Module,
     Real largest = 0;
     for (const auto& traction : parameters_.tractions)
       for (const auto& face : mesh_->boundary_faces)
-        if (traction.holds(*mesh_, face))
+        if (traction.applies_to(*mesh_, face))
           assembly::for_each_face_point(*mesh_, face.cell, face.local_face,
                                         [&, at = traction.on(*mesh_, face)](const auto&, Real, const auto& x) {
                                           for (int i = 0; i < dim; ++i)
@@ -259,7 +259,7 @@ class BulkMomentum final : public assembly::Module,
   template <class Host>
   void add_traction(const BoundaryTraction& traction, Real t, const Host& load) const {
     for (const auto& face : mesh_->boundary_faces) {
-      if (!traction.holds(*mesh_, face)) continue;
+      if (!traction.applies_to(*mesh_, face)) continue;
       const auto at = traction.on(*mesh_, face);
       const auto corners = mesh::face_nodes(shape)[face.local_face];
       assembly::for_each_face_point(*mesh_, face.cell, face.local_face, [&](const auto& N, Real area, const auto& x) {

@@ -19,7 +19,7 @@ struct BoundaryTraction {
   std::optional<base::Expression> pressure = {};  ///< p
   int region = -1;                                ///< only faces of cells of this region; -1: all
 
-  bool holds(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face) const {
+  bool applies_to(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& face) const {
     return face.boundary == boundary && (region < 0 || mesh.cell_region[face.cell] == region);
   }
   bool constant_in_time() const;

@@ -155,7 +155,7 @@ void check_boxes(Comparison& c, const mesh::GlobalMesh& mesh,
       const auto nodes = mesh::nodes_of_face(mesh, face.cell, face.local_face);
       for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k) {
         const auto x = mesh::point(mesh, nodes[k]);
-        any = any || condition.holds_at(x);
+        any = any || condition.applies_at(x);
         if (const Real d = mesh::norm(x - middle); d < distance) std::tie(distance, nearest) = std::pair(d, x);
       }
     }
@@ -191,7 +191,7 @@ void Mechanics::compare_mesh(Comparison& c, const mesh::GlobalMesh& mesh) {
   const bool all = conditions.size() == c.scene().boundary_conditions.size() &&
                    (conditions.empty() ? c.is_absent("Boundary conditions") : c.is_sound("Boundary conditions"));
   check_boxes(c, mesh, held());
-  if (is_in(c.scene()) && all) c.fail_unheld(assembly::unheld(mesh, with_springs(c, conditions)));
+  if (is_in(c.scene()) && all) c.fail_unconstrained(assembly::unconstrained(mesh, with_springs(c, conditions)));
   for (auto it = conditions.begin(); it != conditions.end();)
     it = can_be_evaluated(c, it->second) ? std::next(it) : conditions.erase(it);
   for (const auto& conflict : assembly::find_conflicts(mesh, held(), c.begin().value_or(0))) c.add(conflict);

@@ -72,7 +72,8 @@ fields::Vector with_ghosts(const fields::Layout& layout, const fields::Vector& o
 
 bool add_edges_of_contact(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
                           const ByField<RCP<const fields::Vector>>& displacement, const ContactAlongFaces& along,
-                          const std::vector<contact::Grip>& grips, fields::Vector& bubbles, fields::Vector& tractions) {
+                          const std::vector<contact::Constraint>& constraints, fields::Vector& bubbles,
+                          fields::Vector& tractions) {
   const auto nodes = with_ghosts(*layouts[nodal], *displacement[nodal]),
              of_sides = with_ghosts(*layouts[bubble], *displacement[bubble]);
   const auto u = nodes.getLocalViewHost(Tpetra::Access::ReadOnly),
@@ -86,9 +87,9 @@ bool add_edges_of_contact(const mesh::Mesh& mesh, const ByField<const fields::La
     if (assembly::has_tip(mesh, face.cell[0]) || assembly::has_tip(mesh, face.cell[1])) continue;
     const Real C = compliance(mesh, face, along.elasticity);
     Real lambda = 0;
-    for (int i = 0; i < dim; ++i) lambda += face.frame[0][i] * grips[f].traction[i];
+    for (int i = 0; i < dim; ++i) lambda += face.frame[0][i] * constraints[f].traction[i];
     Face distances(mesh, f, u, beta, along.gap[f]);
-    distances.set_mean(grips[f].gap);
+    distances.set_mean(constraints[f].gap);
     const Real excess = distances.mean([&](Real o) { return std::max(lambda < 0 ? o + C * lambda : -o, 0.0); });
     any = any || excess > 0;
     if (lambda >= 0) {

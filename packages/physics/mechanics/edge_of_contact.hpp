@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/expression.hpp"
-#include "contact/grip.hpp"
+#include "contact/constraint.hpp"
 #include "physics/mechanics/stress_recovery.hpp"
 
 #include <vector>
@@ -27,6 +27,7 @@ struct ContactAlongFaces {
 ///   opening 4/3 mean(o - C |lambda_n|)_+, pressure 2/3 mean(-o)_+/C.
 bool add_edges_of_contact(const mesh::Mesh& mesh, const ByField<const fields::Layout*>& layouts,
                           const ByField<RCP<const fields::Vector>>& displacement, const ContactAlongFaces& along,
-                          const std::vector<contact::Grip>& grips, fields::Vector& bubbles, fields::Vector& tractions);
+                          const std::vector<contact::Constraint>& constraints, fields::Vector& bubbles,
+                          fields::Vector& tractions);
 
 }  // namespace sprekk::physics

@@ -98,7 +98,7 @@ std::unique_ptr<assembly::Module> make_elastic_foundation(const mesh::Mesh& mesh
   assembly::Description foundation{
       "elastic foundation", fmt::format("{}, {}: {}", parameters.boundary, parameters.region, fmt::join(k, ", "))};
   foundation.linear = true;
-  foundation.holds_bodies = *std::max_element(k.begin(), k.end()) > 0;
+  foundation.constrains_bodies = *std::max_element(k.begin(), k.end()) > 0;
   foundation.supports = supports(mesh, parameters);
   return mesh::for_shape(mesh.shape, [&](auto shape) {
     const auto mass = boundary_mass<shape()>(mesh, parameters);

@@ -53,7 +53,7 @@ class ElasticPlasticJump final : public assembly::Module,
 
   std::string name() const override { return "elastic-plastic jump"; }
 
-  void set_fields(const std::set<std::string>& fields) override { holds_fluid_ = fields.count("face pressure") > 0; }
+  void set_fields(const std::set<std::string>& fields) override { contains_fluid_ = fields.count("face pressure") > 0; }
 
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
@@ -69,11 +69,11 @@ class ElasticPlasticJump final : public assembly::Module,
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
     declare_jump_outputs<dim>(
         parameters_, [this](const auto& state, const auto& use) { for_each_jump(state, use); }, d);
-    if (parameters_.n_kept > 0) {
-      d.history.push_back({"kept by laws", face, parameters_.n_kept});
+    if (parameters_.n_history > 0) {
+      d.history.push_back({"history of laws", face, parameters_.n_history});
       d.history.push_back({"runaway slip", face, 1});
     }
-    if (holds_fluid_) d.schur = {"face pressure"};
+    if (contains_fluid_) d.schur = {"face pressure"};
     return d;
   }
 
@@ -99,7 +99,8 @@ class ElasticPlasticJump final : public assembly::Module,
   void states(const assembly::State& state, std::vector<char>& states) const override {
     for_each_face(state, [&](LocalIndex f, const Point& point) { states[f] = static_cast<char>(point.state); });
   }
-  void grip(const assembly::State& state, std::vector<contact::Grip>& grips) const override;
+  void add_contact_constraints(const assembly::State& state,
+                               std::vector<contact::Constraint>& constraints) const override;
   void step_errors(const assembly::State& begin, const assembly::State& end, fields::StepErrors& errors) const override;
   void add_schur(const assembly::State& state, const assembly::Rows& diagonals) const override;
   bool symmetric(const assembly::State& state) const override;
@@ -117,9 +118,9 @@ class ElasticPlasticJump final : public assembly::Module,
   Points at(const assembly::State& state) const {
     Points points = points_;
     points.p_old = state.history[0];
-    if (parameters_.n_kept > 0) points.kept = state.history[2];
+    if (parameters_.n_history > 0) points.stored_history = state.history[2];
     points.factor = state.contact.augmentation;
-    points.tether = state.contact.tether;
+    points.proximal = state.contact.proximal;
     points.anchor = state.contact.anchor;
     return points;
   }
@@ -127,9 +128,9 @@ class ElasticPlasticJump final : public assembly::Module,
   bool dissipates() const { return !parameters_.power_to.empty(); }
 
   /// Returns a function of the face with the history variables of the laws, on the host.
-  auto kept_on_host(const assembly::State& state) const {
+  auto history_on_host(const assembly::State& state) const {
     Kokkos::View<Real**, Kokkos::LayoutRight, Kokkos::HostSpace> numbers;
-    if (parameters_.n_kept > 0) numbers = base::to_host(state.history[2]);
+    if (parameters_.n_history > 0) numbers = base::to_host(state.history[2]);
     return [numbers](LocalIndex f) {
       if (numbers.extent(1) == 0) return laws::History();
       return laws::History{&numbers(f, 0), static_cast<long>(numbers.stride(1))};
@@ -155,7 +156,7 @@ class ElasticPlasticJump final : public assembly::Module,
 
   bool has_tips_;
   ElasticPlasticJumpParameters parameters_;
-  bool holds_fluid_ = false;  // the fluid pressure is unknown
+  bool contains_fluid_ = false;  // the fluid pressure is unknown
   RCP<const mesh::Mesh> mesh_;
   std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
   ConstView<laws::Joint*> laws_;
@@ -202,14 +203,14 @@ void ElasticPlasticJump<dim>::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
   fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
   if (has_tips_) fields_.push_back(context.field("tip displacement"));
-  if (holds_fluid_) pressure_ = context.field("face pressure");
+  if (contains_fluid_) pressure_ = context.field("face pressure");
   for (const auto& extents : mesh::fracture_extents(*mesh_)) size_.push_back(mesh::norm(extents));
   for (const auto& extents : mesh::single_fracture_extents(*mesh_)) single_size_.push_back(mesh::norm(extents));
   const int power_to = dissipates() ? context.field(parameters_.power_to) : -1;
   operators_ = make_joint_operators<dim>(context, fields_, power_to, initial_jump());
   set_points();
   set_sizes();
-  if (parameters_.n_kept > 0) softness_ = softness();
+  if (parameters_.n_history > 0) softness_ = softness();
 }
 
 template <int dim>
@@ -253,7 +254,7 @@ void ElasticPlasticJump<dim>::commit(assembly::State& state) const {
   const Points points = at(state);
   const laws::JointHistory history{.plastic_jump = state.history[0],
                                    .slid = state.history[1],
-                                   .runaway = parameters_.n_kept > 0 ? state.history[3] : View<Real**>(),
+                                   .runaway = parameters_.n_history > 0 ? state.history[3] : View<Real**>(),
                                    .softness = softness_};
   const auto end = operators_->evaluate(points, state);
   Kokkos::parallel_for(
@@ -304,14 +305,15 @@ void ElasticPlasticJump<dim>::measure(const assembly::State& state, const assemb
 /// Sets the contact constraints. Closed faces keep their gap. Sticking faces resist in all directions, sliding faces
 /// normal to their slip.
 template <int dim>
-void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<contact::Grip>& grips) const {
-  const auto kept = kept_on_host(state);
+void ElasticPlasticJump<dim>::add_contact_constraints(const assembly::State& state,
+                                                      std::vector<contact::Constraint>& constraints) const {
+  const auto history = history_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& frame = mesh_->fracture_faces[f].frame;
     const auto& law = joint(f).law;
     Real p[dim - 1] = {}, shear[dim - 1], widening[dim] = {1};  // widening: derivative of w_n - g in w
     const auto contact = [&](Real normal, Real size) {
-      return laws::contact<dim>(normal, size, p, point.p_old, kept(f));
+      return laws::contact<dim>(normal, size, p, point.p_old, history(f));
     };
     const Real compliance = law.compliance(contact(point.traction[0], 0));
     for (int k = 1; k < dim; ++k) {
@@ -325,23 +327,23 @@ void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<con
       const Real along = moved ? p[k - 1] / slipped : sheared > 0 ? shear[k - 1] / sheared : 0;
       widening[k] = -dilates * along;
     }
-    grips[f].augmentation += point.constant;
-    grips[f].modulus = modulus_[f];
-    grips[f].weakens = law.n_history() > 0;
-    grips[f].gap += point.w[0] - law.normal_gap(contact(0, slipped));
-    grips[f].limit += std::max(law.bound(contact(point.traction[0], slipped)), Real(0));
+    constraints[f].augmentation += point.constant;
+    constraints[f].modulus = modulus_[f];
+    constraints[f].weakens = law.n_history() > 0;
+    constraints[f].gap += point.w[0] - law.normal_gap(contact(0, slipped));
+    constraints[f].limit += std::max(law.bound(contact(point.traction[0], slipped)), Real(0));
     for (int k = 0; k < dim; ++k)
       for (int i = 0; i < dim; ++i) {
-        grips[f].traction[i] += point.traction[k] * frame[k][i];
-        grips[f].jump[i] += point.w[k] * frame[k][i];
-        grips[f].away[i] += widening[k] * frame[k][i];
-        if (k > 0) grips[f].slip[i] += (p[k - 1] - point.p_old[k - 1]) * frame[k][i];
+        constraints[f].traction[i] += point.traction[k] * frame[k][i];
+        constraints[f].jump[i] += point.w[k] * frame[k][i];
+        constraints[f].away[i] += widening[k] * frame[k][i];
+        if (k > 0) constraints[f].slip[i] += (p[k - 1] - point.p_old[k - 1]) * frame[k][i];
       }
     Real bound[dim - 1];  // traction of the law; along the slip if there is any
     for (int k = 1; k < dim; ++k) bound[k - 1] = point.traction[k] - point.R[k];
     const Real size = laws::norm(bound);
     for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < dim; ++i) grips[f].excess[i] += point.R[k] * frame[k][i];
+      for (int i = 0; i < dim; ++i) constraints[f].excess[i] += point.R[k] * frame[k][i];
     if (point.state == ContactState::open) return;
     Real held[dim][dim] = {};
     for (int k = 0; k < dim; ++k) held[0][k] = point.state == ContactState::slip || k == 0 ? widening[k] : 0;
@@ -354,7 +356,7 @@ void ElasticPlasticJump<dim>::grip(const assembly::State& state, std::vector<con
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)
         for (int k = 0; k < dim; ++k)
-          for (int l = 0; l < dim; ++l) grips[f].held[i][j] += held[k][l] * frame[k][i] * frame[l][j];
+          for (int l = 0; l < dim; ++l) constraints[f].held[i][j] += held[k][l] * frame[k][i] * frame[l][j];
   });
 }
 
@@ -378,12 +380,12 @@ void ElasticPlasticJump<dim>::add_schur(const assembly::State& state, const asse
 template <int dim>
 bool ElasticPlasticJump<dim>::symmetric(const assembly::State& state) const {
   bool symmetric = true;
-  const auto kept = kept_on_host(state);
+  const auto history = history_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
     const auto& law = joint(f).law;
     const Real p[dim - 1] = {};
-    const auto at = laws::contact<dim>(point.traction[0], Real(0), p, point.p_old, kept(f));
+    const auto at = laws::contact<dim>(point.traction[0], Real(0), p, point.p_old, history(f));
     const bool pulled = point.traction[0] > 0 && law.bond.n_history() > 0;
     if (point.state == ContactState::slip || pulled || laws::compliance_slope(law, at) != 0) symmetric = false;
   });
@@ -394,12 +396,12 @@ template <int dim>
 void ElasticPlasticJump<dim>::for_each_jump(const assembly::State& state,
                                             const std::function<void(const JumpOfFace<dim>&)>& use) const {
   const auto host = [&](int k) { return base::to_host(state.history[k]); };
-  const bool has_kept = parameters_.n_kept > 0;
+  const bool has_kept = parameters_.n_history > 0;
   const auto slid = host(1), runaway = host(has_kept ? 3 : 1);
-  const auto kept = kept_on_host(state);
+  const auto history = history_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& face = mesh_->fracture_faces[f];
-    JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) != 0, kept(f));
+    JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) != 0, history(f));
     jump.number = parameters_.joints.number_of(f, face.fracture);
     jump.shear_modulus = (elasticity(face.cell[0]).G + elasticity(face.cell[1]).G) / 2;
     if (has_kept) jump.runaway = runaway(f, 0);

@@ -24,7 +24,7 @@ struct ElasticPlasticJumpParameters {
   Real augmentation = 0.3;
   FluidPressure fluid_pressure = {};
   Real start = 0;                                    ///< time of the initial state, s
-  int n_kept = 0;                                    ///< largest number of history variables per face, over all ranks
+  int n_history = 0;                                 ///< largest number of history variables per face, over all ranks
   std::vector<laws::JointQuantity> quantities = {};  ///< quantities that joints of any rank provide
   std::string power_to = "";  ///< facet field whose fracture rows receive the power of SlidingFace; empty: none
 };
@@ -48,7 +48,7 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 ///
 /// History variables:
 /// - plastic tangential jump p_old [face, dim - 1], set to w_t on open faces and w_t - lambda_t/K_t on sliding faces;
-/// - "kept by laws" [face, n_kept], if any, updated by the laws;
+/// - "history of laws" [face, n_history], if any, updated by the laws;
 /// - with these "runaway slip" [face, 1]: largest unstable slip of a step so far, see laws/runaway.hpp.
 ///
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture

@@ -1,6 +1,6 @@
 #include "physics/mechanics/jump_outputs.hpp"
 
-#include "contact/grip.hpp"
+#include "contact/constraint.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +27,10 @@ std::optional<Real> moment_magnitude(const std::vector<Real>& moment) {
 
 template <int dim>
 JumpOfFace<dim>::JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::JointPoint<dim>& point,
-                            const laws::JointParameters& joint, bool slid, const laws::History& kept)
+                            const laws::JointParameters& joint, bool slid, const laws::History& history)
     : face(face), point(point), state(slid ? laws::ContactState::slip : laws::ContactState::stick) {
   if (point.state == laws::ContactState::open) state = laws::ContactState::open;
-  laws::split_jump<dim>(joint.law, state, point.w, point.traction, point.p_old, elastic, plastic, kept);
+  laws::split_jump<dim>(joint.law, state, point.w, point.traction, point.p_old, elastic, plastic, history);
   Real tangential[dim - 1], since_start[dim - 1];
   for (int i = 0; i < dim - 1; ++i) {
     tangential[i] = plastic[i + 1];
@@ -38,8 +38,8 @@ JumpOfFace<dim>::JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::Jo
   }
   slip = laws::norm(tangential);
   slip_since_start = laws::norm(since_start);
-  aperture = std::max(joint.least_aperture, joint.initial_aperture + point.w[0]);
-  at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, kept);
+  aperture = std::max(joint.min_aperture, joint.initial_aperture + point.w[0]);
+  at = laws::converged<dim>(joint.law, state, point.w, point.traction, tangential, point.p_old, history);
   const Real bound = joint.law.bound(at);
   if (!at.open && at.shear > 0) mobilised = at.shear / std::max(bound, at.shear * 1e-16);
 }
@@ -87,7 +87,7 @@ void declare_jump_outputs(const ElasticPlasticJumpParameters& parameters, const 
   if (dim == 3) magnitude = {{"moment_magnitude", "-", moment_magnitude}};
   number("moment density", "N/m", {Summary::integral, "moment", "", {}, dim == 3 ? "N*m" : "N", magnitude},
          [](const Jump& jump) { return jump.shear_modulus * jump.slip_since_start; });
-  if (parameters.n_kept > 0)
+  if (parameters.n_history > 0)
     number("runaway slip", "m", {Summary::mean_and_max, "runaway slip"}, [](const Jump& jump) { return jump.runaway; });
   for (const auto& quantity : parameters.quantities) {
     Summary summary{Summary::mean_and_max, quantity.name};

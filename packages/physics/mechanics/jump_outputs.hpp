@@ -22,7 +22,7 @@ struct JumpOfFace {
   Real runaway = 0;        ///< history variable "runaway slip", m
 
   JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::JointPoint<dim>& point,
-             const laws::JointParameters& joint, bool slid, const laws::History& kept);
+             const laws::JointParameters& joint, bool slid, const laws::History& history);
 };
 
 /// Calls use(jump) for each owned fracture face.

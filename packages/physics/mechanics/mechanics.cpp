@@ -50,7 +50,7 @@ fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh:
         auto joint = at_place(scene, material(fracture), [&] {
           const auto x = f < 0 ? std::array<Real, 3>{} : mesh.fracture_faces[f].centre;
           auto joint = material(fracture).joint(x);
-          if (has_fluid(scene)) joint.least_aperture = material(fracture).residual_aperture(x, 0);
+          if (has_fluid(scene)) joint.min_aperture = material(fracture).residual_aperture(x, 0);
           return joint;
         });
         for (std::size_t k = 0; k < jump.size(); ++k)

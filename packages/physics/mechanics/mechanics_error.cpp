@@ -157,7 +157,7 @@ class MechanicsError final : public estimate::MeshError, estimate::GoalErrors {
     auto increment = fields::create_like(x), rows = fields::create_like(x);
     if (!add_edges_of_contact(mesh(), layouts_, displacement(x),
                               {elasticity(setting_.scene, mesh()), varying_gaps(setting_.scene, mesh())},
-                              system_.grips(x), *increment[blocks_[bubble]], *increment[traction_]))
+                              system_.contact_constraints(x), *increment[blocks_[bubble]], *increment[traction_]))
       return;
     system_.globalisation().damp(0, {});
     for (std::size_t k = 0; k < system_.modules().size(); ++k) {

@@ -15,25 +15,25 @@ namespace sprekk::physics {
 namespace {
 
 /// Largest number of history variables per face. Collective.
-int most_kept(const mesh::Mesh& mesh, const std::vector<laws::JointParameters>& joints) {
+int max_history(const mesh::Mesh& mesh, const std::vector<laws::JointParameters>& joints) {
   int here = 0;
   for (const auto& joint : joints) here = std::max(here, joint.law.n_history(mesh.dim()));
   return base::max_over_ranks(*mesh.comm, here);
 }
 
 /// Quantities that joints of any rank provide. Collective.
-std::vector<laws::JointQuantity> told_quantities(const mesh::Mesh& mesh,
-                                                 const std::vector<laws::JointParameters>& joints) {
+std::vector<laws::JointQuantity> reported_quantities(const mesh::Mesh& mesh,
+                                                     const std::vector<laws::JointParameters>& joints) {
   const auto all = laws::joint_quantities();
-  std::vector<Real> told(all.size());
+  std::vector<Real> reported(all.size());
   for (const auto& joint : joints)
     if (joint.law.n_history() > 0)
       for (std::size_t k = 0; k < all.size(); ++k)
-        if (told[k] == 0 && laws::quantity_of(joint.law, all[k].name)) told[k] = 1;
-  told = base::max_over_ranks(*mesh.comm, told);
+        if (reported[k] == 0 && laws::quantity_of(joint.law, all[k].name)) reported[k] = 1;
+  reported = base::max_over_ranks(*mesh.comm, reported);
   std::vector<laws::JointQuantity> result;
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (told[k] > 0) result.push_back(all[k]);
+    if (reported[k] > 0) result.push_back(all[k]);
   return result;
 }
 
@@ -57,8 +57,8 @@ ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const Mecha
           .augmentation = parameters.augmentation,
           .fluid_pressure = fluid,
           .start = parameters.start,
-          .n_kept = most_kept(mesh, parameters.joints.values),
-          .quantities = told_quantities(mesh, parameters.joints.values),
+          .n_history = max_history(mesh, parameters.joints.values),
+          .quantities = reported_quantities(mesh, parameters.joints.values),
           .power_to = parameters.power_to};
 }
 

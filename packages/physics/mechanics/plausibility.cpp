@@ -39,19 +39,19 @@ struct Extreme {
 void take_largest(const Comm& comm, std::vector<Extreme>& all) {
   std::vector<Real> value;
   for (const auto& one : all) value.push_back(one.value);
-  const auto most = base::max_over_ranks(comm, value);
+  const auto maximum = base::max_over_ranks(comm, value);
   std::vector<bool> here;
-  for (std::size_t k = 0; k < all.size(); ++k) here.push_back(value[k] == most[k]);
+  for (std::size_t k = 0; k < all.size(); ++k) here.push_back(value[k] == maximum[k]);
   for (int i = 0; i < 3; ++i) {
     std::vector<Real> x;
     for (std::size_t k = 0; k < all.size(); ++k) x.push_back(here[k] ? all[k].x[i] : huge);
-    const auto least = base::min_over_ranks(comm, x);
+    const auto minimum = base::min_over_ranks(comm, x);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      here[k] = here[k] && x[k] == least[k];
-      all[k].x[i] = least[k];
+      here[k] = here[k] && x[k] == minimum[k];
+      all[k].x[i] = minimum[k];
     }
   }
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].value = most[k];
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].value = maximum[k];
 }
 
 /// Calls look() and ignores errors of expressions, which the first affected step reports. Not collective.
@@ -65,9 +65,9 @@ void looking(const Look& look) {
 
 /// At most twelve of the times, including the last one.
 std::vector<Real> some_of(const std::vector<Real>& times) {
-  constexpr std::size_t most = 12;
+  constexpr std::size_t maximum = 12;
   std::vector<Real> some;
-  const std::size_t n = times.size(), stride = (n + most - 1) / most;
+  const std::size_t n = times.size(), stride = (n + maximum - 1) / maximum;
   for (std::size_t k = (n - 1) % stride; k < n; k += stride) some.push_back(times[k]);
   return some;
 }
@@ -111,7 +111,7 @@ bool moves(const Scene& scene, int i) {
 
 /// Warns about displacements of a piece of rock that differ by more than 5 % of their distance. Collective.
 std::string strain_doubt(const Setting& setting, const std::vector<Real>& times) {
-  constexpr Real most = 0.05;
+  constexpr Real maximum = 0.05;
   struct {
     Real strain = 0, t = 0, difference = 0, distance = 0;
   } worst;
@@ -130,7 +130,7 @@ std::string strain_doubt(const Setting& setting, const std::vector<Real>& times)
       }
     }
   }
-  if (worst.strain <= most) return "";
+  if (worst.strain <= maximum) return "";
   return implausible(setting.scene.origin + ": Sprekk > Boundary conditions",
                      fmt::format("displacements at t = {:.4g} s differ by {:.3g} m over {:.3g} m of rock, {:.3g} %",
                                  worst.t, worst.difference, worst.distance, 100 * worst.strain),
@@ -139,20 +139,20 @@ std::string strain_doubt(const Setting& setting, const std::vector<Real>& times)
 }
 
 /// Smallest Young's modulus of the rocks with constant values, Pa; 0: none.
-Real least_modulus(const Scene& scene) {
-  Real least = 0;
+Real min_modulus(const Scene& scene) {
+  Real minimum = 0;
   for (const auto& [name, material] : scene.materials) {
     if (material.type != "elastic" || !material.has_elasticity() || !material.is_uniformly_elastic()) continue;
     const Real E = material.elasticity({}).youngs_modulus();
-    least = least == 0 ? E : std::min(least, E);
+    minimum = minimum == 0 ? E : std::min(minimum, E);
   }
-  return least;
+  return minimum;
 }
 
 /// Warns about stresses above Young's modulus. Collective.
 std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
   const auto& [scene, mesh, start] = setting;
-  const Real E = least_modulus(scene);
+  const Real E = min_modulus(scene);
   if (E == 0) return "";
   Real stress = 0;
   const auto compare = [&](Real value) { stress = std::max(stress, std::abs(value)); };
@@ -171,10 +171,10 @@ std::string load_doubt(const Setting& setting, const std::vector<Real>& times) {
       for (const auto& component : initial.value[mesh.cell_region[cell]])
         compare(component(mesh::cell_centre(mesh, cell), 0));
   });
-  const Real most = base::max_over_ranks(*mesh.comm, stress);
-  if (most <= E) return "";
+  const Real maximum = base::max_over_ranks(*mesh.comm, stress);
+  if (maximum <= E) return "";
   return implausible(scene.origin + ": Sprekk > Materials",
-                     fmt::format("Young's modulus is {:.4g} Pa, and there is a stress of {:.4g} Pa", E, most),
+                     fmt::format("Young's modulus is {:.4g} Pa, and there is a stress of {:.4g} Pa", E, maximum),
                      "this is a strain of the rock above 100 %",
                      E < 1e4 ? "write the unit after the modulus, as in \"50 GPa\"" : "check both units");
 }
@@ -256,7 +256,7 @@ std::vector<Doubt> strength_doubts(const Material& joint) {
 /// entry.
 std::vector<std::string> joint_doubts(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
-  const Real E = least_modulus(scene), size = mesh::largest_extent(mesh);
+  const Real E = min_modulus(scene), size = mesh::largest_extent(mesh);
   const auto doubts = [&](const Material& joint) {
     auto all = stiffness_doubts(joint, E, size);
     if (joint.source) return all;  // values with a source are trusted
@@ -264,17 +264,17 @@ std::vector<std::string> joint_doubts(const Setting& setting) {
     return all;
   };
   std::vector<std::string> all;
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (const auto& [name, material] : scene.materials)
     for (const auto& [entry, what, why, advice] : material.type == "joint" ? doubts(material) : std::vector<Doubt>()) {
       all.push_back(implausible(fmt::format("{}: Sprekk > Materials > {} > \"{}\"", scene.origin, name, entry), what,
                                 why, advice));
-      told.insert(entry + what);
+      reported.insert(entry + what);
     }
   std::map<std::string, std::pair<Doubt, std::vector<int>>> own;  // [entry] warning and its single fractures
   for (const auto& [single, joint] : scene.own_joints)
     for (const auto& doubt : doubts(joint))
-      if (!told.count(doubt.entry + doubt.what))
+      if (!reported.count(doubt.entry + doubt.what))
         own.try_emplace(doubt.entry, doubt, std::vector<int>()).first->second.second.push_back(single);
   for (const auto& [entry, found] : own) {
     const auto& [doubt, singles] = found;
@@ -318,15 +318,15 @@ std::string tension_doubt(const Setting& setting) {
     }
   });
   take_largest(*mesh.comm, highest);
-  const auto& most = highest[0];
+  const auto& maximum = highest[0];
   volumes = base::sum_over_ranks(*mesh.comm, volumes);
   compression = base::max_over_ranks(*mesh.comm, compression);
-  if (most.value <= 1e-6 * compression) return "";
+  if (maximum.value <= 1e-6 * compression) return "";
   return implausible(
       scene.origin + ": Sprekk > Bulk",
       fmt::format("the initial stress is tension in {:.3g} % of the cells, {:.4g} Pa at ({:.4g}, {:.4g}, "
                   "{:.4g})",
-                  100 * volumes[0] / volumes[1], most.value, most.x[0], most.x[1], most.x[2]),
+                  100 * volumes[0] / volumes[1], maximum.value, maximum.x[0], maximum.x[1], maximum.x[2]),
       "rock at rest is in compression, which is negative",
       "check the signs, the \"surface\" of a \"lithostatic stress\" and the \"datum\" of an \"in-situ stress\"");
 }
@@ -389,14 +389,14 @@ std::string strength_doubt(const Setting& setting) {
     if (beyond[k] > 0) names.push_back(mesh.single_fractures[k].name);
   }
   if (names.empty()) return "";
-  constexpr std::size_t told = 8;
+  constexpr std::size_t reported = 8;
   const auto n = names.size();
-  if (n > told) names.resize(told);
+  if (n > reported) names.resize(reported);
   return implausible(
       setting.scene.origin + ": the initial state",
       fmt::format("{} beyond the strength of the joint ({:.3g} % of the area): \"{}\"{}",
                   n == 1 ? "a fracture is" : fmt::format("{} fractures are", n), 100 * area / total,
-                  fmt::join(names, "\", \""), n > told ? ", ..." : ""),
+                  fmt::join(names, "\", \""), n > reported ? ", ..." : ""),
       "they slip or open in the first step without any load",
       "check the initial stress, the pressure and the friction, or treat this step as part of the initial state");
 }

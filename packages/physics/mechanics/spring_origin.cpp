@@ -42,7 +42,7 @@ class SpringOrigin final : public assembly::Module,
     layout_ = context.layout(displacement_);
     load_ = assembly::Load(layout_->n_owned());
   }
-  bool holds_bodies() const override { return springs_.holds_bodies(); }
+  bool constrains_bodies() const override { return springs_.constrains_bodies(); }
   std::optional<std::vector<contact::Support>> supports() const override { return springs_.supporting->supports(); }
   bool constant_load() const override { return !keeps_; }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override { springs_->jacobian(state, J); }
@@ -86,11 +86,11 @@ class SpringOrigin final : public assembly::Module,
     const base::HostTable<Real**> result("of springs", layout_->n_owned_entities(), dim_);
     const View<Real**> before = keeps_ ? state.history.back() : View<Real**>("none", result.extent(0), dim_);
     const auto u = base::to_host(state.x[displacement_]);
-    const auto kept = base::to_host(before);
+    const auto saved = base::to_host(before);
     const auto sprung = springs_.supporting->supports().value();
     for (const auto& [unknown, i] : sprung)
       if (const LocalIndex node = unknown / dim_; unknown < layout_->n_owned())
-        result(node, i) = value(stiffness_[i], u(unknown), kept(node, i));
+        result(node, i) = value(stiffness_[i], u(unknown), saved(node, i));
     return result.on_device();
   }
 

@@ -256,7 +256,7 @@ class TipEnrichment final : public assembly::Module, public assembly::Loads {
   template <class Host>
   void add_tractions(const mesh::Mesh::BoundaryFace& face, Real t, const Host& load) const {
     for (const auto& traction : parameters_.tractions) {
-      if (!traction.holds(*mesh_, face)) continue;
+      if (!traction.applies_to(*mesh_, face)) continue;
       const auto at = traction.on(*mesh_, face);
       tip(face.cell).for_each_face_point(face.local_face,
                                          [&](const auto&, const auto& psi, const auto& area, const auto& x) {

@@ -136,11 +136,11 @@ std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) 
 }  // namespace
 
 std::string friction_doubt(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto [least, most] = compressions(scene);
+  const auto [minimum, maximum] = compressions(scene);
   std::string joint;
   laws::JointMaterial::Slope steepest{1, true, 0};
   for (const auto& [material, called] : used_joints(scene, mesh)) {
-    const auto slope = material.friction_slope(least, most);
+    const auto slope = material.friction_slope(minimum, maximum);
     if (!slope || slope->largest <= steepest.largest) continue;
     steepest = *slope;
     joint = called;
@@ -159,10 +159,10 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const Real size = mesh::largest_extent(mesh);
   const auto rock = bounding_rock(scene);
   if (!rock) return "";
-  const auto [least, most] = compressions(scene);
-  const Real compression = std::sqrt(least * most), zero = 0;  // compression for the evaluation of laws
+  const auto [minimum, maximum] = compressions(scene);
+  const Real compression = std::sqrt(minimum * maximum), zero = 0;  // compression for the evaluation of laws
   std::string weakest;
-  Real lowest = most;  // smallest compression of unstable slip
+  Real lowest = maximum;  // smallest compression of unstable slip
   for (const auto& [material, called] : used_joints(scene, mesh)) {
     if (!material.is_uniform()) continue;
     auto law = material.joint({}).law;

@@ -133,10 +133,10 @@ class PoroelasticCoupling final : public assembly::Module,
     const auto at_rate_1 = with_rate(state, 1);
     for (const auto& term : rates_) term.add_residual(at_rate_1, volumes);
     for (int k = 0; k < 2; ++k) {
-      const auto kept = state.history[k];
+      const auto saved = state.history[k];
       const auto now = volumes[pressures_[k]];
       Kokkos::parallel_for(
-          "keep", Kokkos::RangePolicy<Execution>(0, kept.extent(0)), KOKKOS_LAMBDA(int i) { kept(i, 0) = now(i); });
+          "keep", Kokkos::RangePolicy<Execution>(0, saved.extent(0)), KOKKOS_LAMBDA(int i) { saved(i, 0) = now(i); });
     }
   }
 

@@ -27,7 +27,7 @@ def path(dim, steps):
     return np.array([sway[0], np.full_like(t, 0.1), sway[1]][:dim])
 
 
-class Kept(measured.Counted):
+class Saved(measured.Counted):
     """Model that records the state after every step."""
 
     def collect_data(self):
@@ -37,7 +37,7 @@ class Kept(measured.Counted):
         step = {"time": int(self.time_manager.time_index), "seconds": sum(self.seconds.get(part, 0) for part in ("assembly", "solution")), "solves": self.solves,
                 "history": float(measured.evaluate(self, self.damage_history(fracture))[0]), "normal": scale * float(traction[-1]),
                 "shear": scale * float(np.linalg.norm(traction[:-1])), "slip": float(np.linalg.norm(jump[:-1]))}
-        self.__dict__.setdefault("told", []).append(step)
+        self.__dict__.setdefault("reported", []).append(step)
         return super().collect_data()
 
 
@@ -47,7 +47,7 @@ def make(steps):
     exact = {"isotropic": example.ExactSolutionIsotropic, "anisotropic": example.ExactSolutionAnisotropic}[kind]
     jumps = path(dim, steps)
     space = path(3, steps)
-    return type("Model", (Kept, geometry, base), {})(
+    return type("Model", (Saved, geometry, base), {})(
         {**example.model_params, "exact_solution": exact, "material_constants": {"solid": FractureDamageSolidConstants(**SOLID)},
          "time_manager": pp.TimeManager(np.arange(steps + 1), 1, True), "interface_displacement_parameter_values": jumps,
          "north_displacements": space, "max_iterations": 60})
@@ -56,4 +56,4 @@ def make(steps):
 if __name__ == "__main__":
     dim, kind, count = int(sys.argv[1]), sys.argv[2], int(sys.argv[3])
     model = measured.run(make, 1, count)
-    measured.tell(model, steps=model.told, path=path(dim, count).tolist())
+    measured.tell(model, steps=model.reported, path=path(dim, count).tolist())

@@ -61,12 +61,12 @@ def in_fracture(model):
     pressure, temperature = (measured.evaluate(model, of(crack)) for of in (model.pressure, model.temperature))
     outward = np.asarray(crack[0].cell_faces.sum(axis=1)).ravel() * model.domain_boundary_sides(crack[0]).east
     water, heat = (outward @ measured.evaluate(model, of(crack)) for of in (model.fluid_flux, model.energy_flux))
-    brought = model.fluid.reference_component.specific_heat_capacity * model.units.convert_units(COLD - HOT, "K") * water
+    injected = model.fluid.reference_component.specific_heat_capacity * model.units.convert_units(COLD - HOT, "K") * water
     reaction = si(found["reaction"], "N", 1e-9)
     return {"slip max": float(si(found["slip max"], "m", 1e3)), "slip mean": float(si(found["slip mean"], "m", 1e3)),
             "opening": mean(measured.vectors(model, model.displacement_jump(crack))[:, 2], "m", 1e3),
             "t_n mean": float(si(found["t_n mean"], "Pa", 1e-6)), "p mean": mean(pressure, "Pa", 1e-6), "T mean": mean(temperature, "K"),
-            "heat": float(si(heat - brought, "W", 1e-3)), "reaction x": float(reaction[0]), "reaction z": float(reaction[2])}
+            "heat": float(si(heat - injected, "W", 1e-3)), "reaction x": float(reaction[0]), "reaction z": float(reaction[2])}
 
 
 def make(size, file):

@@ -186,14 +186,14 @@ TEST(FreeMotion, DisconnectedBodies) {
     const std::size_t n_free = dim_of(cell) == 2 ? 3 : 6;
     EXPECT_EQ(free_motions(mesh, {first_only}).size(), n_free) << cell;
     EXPECT_EQ(free_motions(mesh, {}).size(), 2 * n_free) << cell;
-    const auto message = unheld(mesh, {first_only, hold(mesh, "west", "x")});
+    const auto message = unconstrained(mesh, {first_only, hold(mesh, "west", "x")});
     EXPECT_THAT(
         message,
         AllOf(HasSubstr("\"second\""), HasSubstr(fmt::format("{} cells of {}", one.n_cells(), 2 * one.n_cells())),
               HasSubstr(dim_of(cell) == 2 ? "it can move along (0, 1)" : "it can move along (0, 1, 0)"),
               HasSubstr("around (10.")));
-    EXPECT_EQ(unheld(mesh, {first_only, hold(mesh, "west", "xyz")}), "");
-    EXPECT_THAT(unheld(mesh, {}), HasSubstr("and 1 more bodies"));
+    EXPECT_EQ(unconstrained(mesh, {first_only, hold(mesh, "west", "xyz")}), "");
+    EXPECT_THAT(unconstrained(mesh, {}), HasSubstr("and 1 more bodies"));
   }
 }
 
@@ -204,7 +204,7 @@ TEST(FreeMotion, ContactHolds) {
     box.fractures["f"] =
         dim_of(cell) == 2 ? mesh::testing::fracture({0, 1}, {2, 1}) : mesh::testing::fracture({0, 1, 0}, {2, 1, 1});
     const auto mesh = make_box(box);
-    EXPECT_EQ(unheld(mesh, {hold(mesh, "south", "xyz")}), "") << cell;
+    EXPECT_EQ(unconstrained(mesh, {hold(mesh, "south", "xyz")}), "") << cell;
   }
 }
 

@@ -70,7 +70,7 @@ void for_each_edge(const GlobalMesh& mesh, const Visit& visit) {
 }
 
 /// Returns the smallest Jacobian determinant at the points of CurvedQuadrature, and the volume.
-std::array<Real, 2> least_determinant_and_volume(const GlobalMesh& mesh) {
+std::array<Real, 2> min_determinant_and_volume(const GlobalMesh& mesh) {
   return mesh::for_shape(mesh.shape, [&](auto s) {
     constexpr Shape shape = s();
     constexpr int dim = mesh::dimension(shape), n = mesh::n_nodes(shape);
@@ -103,8 +103,8 @@ TEST(QuarterPoints, OfEdgesFromTips) {
       moved += tip[0] != tip[1];
     });
     EXPECT_GE(moved, 2 * 4 * (is_flat(cell) ? 1 : 3));
-    const auto [least, volume] = least_determinant_and_volume(mesh);
-    EXPECT_GT(least, 0);
+    const auto [minimum, volume] = min_determinant_and_volume(mesh);
+    EXPECT_GT(minimum, 0);
     EXPECT_NEAR(volume, is_flat(cell) ? 24 : 48, 1e-11);
     for (std::size_t node = 0; node < mesh.parent_node.size(); ++node)  // both sides of fractures move equally
       EXPECT_LE(norm(point(mesh, static_cast<GlobalIndex>(node)) - point(mesh, mesh.parent_node[node])), 1e-14);
@@ -154,7 +154,7 @@ TEST(QuarterPoints, NotInCellsWithAFaceOfTips) {
       moved += std::abs(place - 0.5) > 0.1;
     });
     EXPECT_GT(moved, 0);
-    EXPECT_GT(least_determinant_and_volume(mesh)[0], 0);
+    EXPECT_GT(min_determinant_and_volume(mesh)[0], 0);
   }
 }
 
@@ -180,9 +180,9 @@ TEST(QuarterPoints, NotWhereTheMapWouldTurn) {
     }
   ASSERT_GE(bent, 0);
   const auto original = curved;
-  ASSERT_GT(least_determinant_and_volume(curved)[0], 0);
+  ASSERT_GT(min_determinant_and_volume(curved)[0], 0);
   move_to_quarter_points(curved);
-  EXPECT_GT(least_determinant_and_volume(curved)[0], 0);
+  EXPECT_GT(min_determinant_and_volume(curved)[0], 0);
   const auto differ = [&](const GlobalMesh& a, const GlobalMesh& b, GlobalIndex node) {
     return norm(point(a, node) - point(b, node)) > 1e-12;
   };
@@ -220,7 +220,7 @@ TEST(QuarterPoints, OfAFrontThatEndsAtAFracture) {
       moved_copies += mesh.parent_node[node] != node && norm(point(mesh, node) - point(before, node)) > 0.1;
     }
     EXPECT_GT(moved_copies, 0);
-    EXPECT_GT(least_determinant_and_volume(mesh)[0], 0);
+    EXPECT_GT(min_determinant_and_volume(mesh)[0], 0);
   }
 }
 

@@ -296,7 +296,7 @@ TEST(Parameters, expressions_call_each_other_by_name) {
   EXPECT_EQ(again.expressions.size(), 4u);
 }
 
-TEST(Parameters, named_expressions_that_are_wrong_are_told_once) {
+TEST(Parameters, named_expressions_that_are_wrong_are_reported_once) {
   ParameterList list;
   list.set("force", "a + b + wrong + sin").set("moved", array<std::string>({"free"}));
   auto& named = list.sublist("Expressions");
@@ -316,7 +316,7 @@ TEST(Parameters, named_expressions_that_are_wrong_are_told_once) {
   EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 7) << errors;
 }
 
-TEST(Parameters, all_expressions_that_are_wrong_are_told_and_no_follow_ups) {
+TEST(Parameters, all_expressions_that_are_wrong_are_reported_and_no_follow_ups) {
   ParameterList list;
   list.set("force", "2*f(t) +").set("moved", array<std::string>({"fre", "ramp(x)", "g(t)", "free", "hh(t)"}));
   list.sublist("solver").set("a", Unreadable{"f: R > solver > \"a\": is broken"});

@@ -96,7 +96,7 @@ TEST(Xml, structure_that_is_not_a_parameter_list_is_refused) {
          " > \"a\": a <Parameter> cannot have elements inside");
 }
 
-TEST(Xml, all_defects_are_told_or_kept_in_their_places) {
+TEST(Xml, all_defects_are_reported_or_kept_in_their_places) {
   const std::string text = scene(
       "<foo/><Parameter name=\"a\" type=\"int\" value=\"x\"/><Parameter name=\"b\" type=\"int\" value=\"1\"/>"
       "<ParameterList name=\"S\">text<Parameter name=\"c\" value=\"1\"/></ParameterList><ParameterList name=\"b\"/>");

@@ -12,12 +12,12 @@ namespace {
 
 constexpr Real infinity = std::numeric_limits<Real>::infinity(), nan = std::numeric_limits<Real>::quiet_NaN();
 
-/// Returns the finished search; fails if the search needs more than `most_values` values.
+/// Returns the finished search; fails if the search needs more than `max_values` values.
 ZeroSearch searched(const std::function<Real(Real)>& f, Real first = 0.1, Real reach = 1e3) {
   ZeroSearch search(f(0), first, reach);
   int n_values = 0;
-  for (; !search.done() && n_values <= ZeroSearch::most_values; ++n_values) search.next(f(search.s));
-  EXPECT_LE(n_values, ZeroSearch::most_values);
+  for (; !search.done() && n_values <= ZeroSearch::max_values; ++n_values) search.next(f(search.s));
+  EXPECT_LE(n_values, ZeroSearch::max_values);
   EXPECT_TRUE(search.done());
   return search;
 }

@@ -91,7 +91,7 @@ TEST(Layout, OwnedUnknownsComeFirstAndEachHasOneOwner) {
     }
 }
 
-TEST(Layout, ImportBringsEveryGhost) {
+TEST(Layout, ImportsEveryGhost) {
   for (const auto& mesh : meshes())
     for (const auto& field : all_fields) {
       const Layout layout(field, *mesh);

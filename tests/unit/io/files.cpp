@@ -111,10 +111,10 @@ TEST(AppendDurably, KeepsWhatWasBefore) {
   });
 }
 
-TEST(BringToDisk, ToleratesOnlyDirectoriesThatCannotBe) {
-  io::bring_to_disk("/proc");                                                  // returns EINVAL
+TEST(FlushToDisk, ToleratesOnlyDirectoriesThatCannotBe) {
+  io::flush_to_disk("/proc");                                                  // returns EINVAL
   for (const std::string path : {"/dev/null", "/proc/self/stat", "/nowhere"})  // EINVAL for other files; missing file
-    EXPECT_TRUE(contains(error_of<Error>([&] { io::bring_to_disk(path); }), path)) << path;
+    EXPECT_TRUE(contains(error_of<Error>([&] { io::flush_to_disk(path); }), path)) << path;
 }
 
 TEST(MakeDirectory, MakesParentsAndKeepsContent) {

@@ -277,17 +277,17 @@ TEST(Vtu, BlocksReadBackByTheirNames) {
       }
     }
     EXPECT_EQ(n_faces, first_block_of(comm->getSize()));
-    auto* kept = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(3));
-    ASSERT_TRUE(kept && kept->GetNumberOfCells() == 2);
-    EXPECT_EQ(kept->GetNumberOfPoints(), 3);
+    auto* saved = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(3));
+    ASSERT_TRUE(saved && saved->GetNumberOfCells() == 2);
+    EXPECT_EQ(saved->GetNumberOfPoints(), 3);
     const auto value = [&](const char* array, int c) {
-      return kept->GetCellData()->GetArray(array)->GetComponent(c, 0);
+      return saved->GetCellData()->GetArray(array)->GetComponent(c, 0);
     };
     EXPECT_EQ(value("fractures", 0), 2);
     EXPECT_EQ(value("faces", 0), 3);
     EXPECT_EQ(value("first fracture", 1), 1);
     EXPECT_EQ(value("last fracture", 1), 2);
-    EXPECT_EQ(measure(kept->GetCell(1)), 2);
+    EXPECT_EQ(measure(saved->GetCell(1)), 2);
   }
 }
 

@@ -31,44 +31,44 @@ Real exact(const Path& path, Real t) {
   return sum;
 }
 
-using Kept = std::vector<Real>;
+using FanNumbers = std::vector<Real>;
 
-void go(Kept& kept, const Path& path, std::size_t begin, std::size_t end) {
+void go(FanNumbers& history, const Path& path, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
     const Real a[] = {i ? path.u[i - 1][0] : 0, i ? path.u[i - 1][1] : 0}, b[] = {path.u[i][0], path.u[i][1]};
-    DirectionFan fan({kept.data(), 1});
+    DirectionFan fan({history.data(), 1});
     fan.add(a, b, path.k[i]);
-    fan.write({kept.data(), 1});
+    fan.write({history.data(), 1});
   }
 }
-Kept along(const Path& path) {
-  Kept kept(DirectionFan::n_numbers, 0);
-  go(kept, path, 0, path.u.size());
-  return kept;
+FanNumbers along(const Path& path) {
+  FanNumbers history(DirectionFan::n_numbers, 0);
+  go(history, path, 0, path.u.size());
+  return history;
 }
 
-Real kept_value(const Kept& kept, Real t) {
+Real stored_value(const FanNumbers& history, Real t) {
   const Real m[] = {std::cos(t), std::sin(t)};
-  const auto form = DirectionFan::form({kept.data(), 1}, m[0], m[1]);
+  const auto form = DirectionFan::form({history.data(), 1}, m[0], m[1]);
   return form.constant + form.gradient[0] * m[0] + form.gradient[1] * m[1];
 }
 
 /// Returns the interval of (exact value - stored value) of the sector that contains t.
-std::array<Real, 2> interval(const Kept& kept, Real t) {
+std::array<Real, 2> interval(const FanNumbers& history, Real t) {
   int j = 0;
-  while (j + 1 < kept[0] && kept[1 + 5 * (j + 1)] <= t) ++j;
-  return {kept[1 + 5 * j + 3], kept[1 + 5 * j + 4]};
+  while (j + 1 < history[0] && history[1 + 5 * (j + 1)] <= t) ++j;
+  return {history[1 + 5 * j + 3], history[1 + 5 * j + 4]};
 }
 
 /// Checks in many directions that the interval contains the error. Returns the largest error divided by the largest
 /// value.
-Real expect_enclosed(const Path& path, const Kept& kept) {
-  const DirectionFan fan({kept.data(), 1});
+Real expect_enclosed(const Path& path, const FanNumbers& history) {
+  const DirectionFan fan({history.data(), 1});
   Real worst = 0, largest = 0;
   constexpr int n = 1440;
   for (int i = 0; i < n; ++i) {
-    const Real t = 2 * pi * i / n + 1e-4, sum = exact(path, t), error = sum - kept_value(kept, t);
-    const auto [low, high] = interval(kept, t);
+    const Real t = 2 * pi * i / n + 1e-4, sum = exact(path, t), error = sum - stored_value(history, t);
+    const auto [low, high] = interval(history, t);
     const Real rounding = 1e-11 * fan.largest();
     EXPECT_GE(error, low - rounding) << t;
     EXPECT_LE(error, high + rounding) << t;
@@ -113,10 +113,10 @@ Path cycles(int n, std::vector<Real> directions) {
 /// Known values, independent of this program: Lambda in direction u after each step of short paths.
 TEST(DirectionFan, KnownValues) {
   const auto expect = [](const Path& path, const std::vector<Real>& values) {
-    Kept kept(DirectionFan::n_numbers, 0);
+    FanNumbers history(DirectionFan::n_numbers, 0);
     for (std::size_t i = 0; i < path.u.size(); ++i) {
-      go(kept, path, i, i + 1);
-      EXPECT_NEAR(kept_value(kept, std::atan2(path.u[i][1], path.u[i][0])), values[i], 1e-12 * values[i]) << i;
+      go(history, path, i, i + 1);
+      EXPECT_NEAR(stored_value(history, std::atan2(path.u[i][1], path.u[i][0])), values[i], 1e-12 * values[i]) << i;
     }
   };
   const std::vector<Vector> path = {{3e-3, 0},      {3e-3, 2e-3},  {-1e-3, 2e-3},
@@ -133,10 +133,10 @@ TEST(DirectionFan, KnownValues) {
 TEST(DirectionFan, ExactForFewDirections) {
   for (const auto& directions : {std::vector<Real>{0.3}, {0, 0.4, 1.1, 2, 2.9}}) {
     const auto path = cycles(10000, directions);
-    const auto kept = along(path);
-    EXPECT_LT(kept[0], DirectionFan::capacity / 2);
-    EXPECT_LT(expect_enclosed(path, kept), 1e-12);
-    EXPECT_EQ(DirectionFan({kept.data(), 1}).error(), 0);
+    const auto history = along(path);
+    EXPECT_LT(history[0], DirectionFan::capacity / 2);
+    EXPECT_LT(expect_enclosed(path, history), 1e-12);
+    EXPECT_EQ(DirectionFan({history.data(), 1}).error(), 0);
   }
 }
 
@@ -146,10 +146,10 @@ TEST(DirectionFan, EnclosesTheExactHistory) {
                                          {circle(1000, {0, 0}, true), 1e-3},  {random_walk(1000, 1), 1e-2},
                                          {random_walk(1000, 2), 1e-2},        {random_walk(10000, 3), 2e-2}};
   for (const auto& [path, bound] : paths) {
-    const auto kept = along(path);
-    EXPECT_EQ(kept[0], DirectionFan::capacity);
-    EXPECT_LT(expect_enclosed(path, kept), bound);
-    EXPECT_GT(DirectionFan({kept.data(), 1}).error(), 0);
+    const auto history = along(path);
+    EXPECT_EQ(history[0], DirectionFan::capacity);
+    EXPECT_LT(expect_enclosed(path, history), bound);
+    EXPECT_GT(DirectionFan({history.data(), 1}).error(), 0);
   }
 }
 
@@ -157,24 +157,24 @@ TEST(DirectionFan, EnclosesTheExactHistory) {
 /// table does not change it. The stored history is then consistent with the converged state.
 TEST(DirectionFan, KeepsTheValueInThePresentDirection) {
   const auto path = random_walk(300, 11);
-  Kept kept(DirectionFan::n_numbers, 0);
+  FanNumbers history(DirectionFan::n_numbers, 0);
   for (std::size_t i = 0; i < path.u.size(); ++i) {
     const auto& u = path.u[i];
     const Real t = std::atan2(u[1], u[0]), size = std::hypot(u[0], u[1]);
     const Real along = i ? (u[0] * path.u[i - 1][0] + u[1] * path.u[i - 1][1]) / size : 0;
-    const Real before = kept_value(kept, t);
-    go(kept, path, i, i + 1);
-    EXPECT_NEAR(kept_value(kept, t), before + path.k[i] * std::abs(size - std::max(along, Real(0))), 1e-12) << i;
+    const Real before = stored_value(history, t);
+    go(history, path, i, i + 1);
+    EXPECT_NEAR(stored_value(history, t), before + path.k[i] * std::abs(size - std::max(along, Real(0))), 1e-12) << i;
   }
-  EXPECT_GT(DirectionFan({kept.data(), 1}).error(), 0);
+  EXPECT_GT(DirectionFan({history.data(), 1}).error(), 0);
 }
 
 /// The stored numbers suffice to continue a path: the second half, started from them, gives bitwise equal values.
 TEST(DirectionFan, GoesOnFromWhatItHasKept) {
   const auto path = random_walk(400, 7);
-  Kept first(DirectionFan::n_numbers, 0);
+  FanNumbers first(DirectionFan::n_numbers, 0);
   go(first, path, 0, 200);
-  Kept later = first;
+  FanNumbers later = first;
   go(later, path, 200, 400);
   EXPECT_EQ(later, along(path));
 }
@@ -187,23 +187,23 @@ TEST(AnisotropicDamage, HasItsDerivativesInSpace) {
   auto path = random_walk(300, 4);
   for (auto& u : path.u)
     for (Real& x : u) x *= 0.01;
-  Kept kept(1 + DirectionFan::n_numbers, 0);
+  FanNumbers history(1 + DirectionFan::n_numbers, 0);
   for (std::size_t i = 0; i < path.u.size(); ++i) {
-    Contact<Real> at{.dim = 3, .history = {kept.data(), 1}};
+    Contact<Real> at{.dim = 3, .history = {history.data(), 1}};
     at.slip_of_step = std::hypot(path.u[i][0] - (i ? path.u[i - 1][0] : 0), path.u[i][1] - (i ? path.u[i - 1][1] : 0));
     at.wear = path.k[i];
     for (int k = 0; k < 2; ++k) {
       at.plastic_jump[k] = path.u[i][k];
       at.last_plastic_jump[k] = i ? path.u[i - 1][k] : 0;
     }
-    law.commit(at, {kept.data(), 1});
+    law.commit(at, {history.data(), 1});
   }
   const auto left = [&](const auto& u, const auto& v, bool friction) {
     using T = std::decay_t<decltype(u)>;
     using std::sqrt;
     Contact<T> at;
     at.dim = 3;
-    at.history = {kept.data(), 1};
+    at.history = {history.data(), 1};
     at.wear = T(1.3);
     for (int k = 0; k < 2; ++k) at.last_plastic_jump[k] = path.u.back()[k];
     at.plastic_jump[0] = u;

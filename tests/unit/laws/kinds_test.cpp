@@ -43,7 +43,7 @@ void for_each_kind(const Kinds<Ks...>&, const Test& test) {
 /// Tractions of solutions and of iterates; slips; values of history variables.
 const Real tractions[] = {-1e12, -1e9, -4e7, -1e6, -2e4, -10, -1e-9, 0, 1e-9, 10, 1e6};
 const Real slips[] = {0, 1e-12, 1e-5, 3e-3};
-const Real kept[] = {0, 1e-4, 1};
+const Real histories[] = {0, 1e-4, 1};
 
 template <class T>
 Contact<T> contact_at(const T& lambda_n, const T& slip, const Real* history) {
@@ -61,10 +61,10 @@ Contact<T> contact_at(const T& lambda_n, const T& slip, const Real* history) {
 template <class F>
 void expect_differentiable(const F& f) {
   using Fad = Sacado::Fad::SFad<Real, 2>;
-  for (const Real history : kept)
+  for (const Real history : histories)
     for (const Real lambda_n : tractions)
       for (const Real slip : slips) {
-        SCOPED_TRACE(::testing::Message() << lambda_n << " Pa, " << slip << " m, kept " << history);
+        SCOPED_TRACE(::testing::Message() << lambda_n << " Pa, " << slip << " m, history " << history);
         const Fad value = f(contact_at(Fad(2, 0, lambda_n), Fad(2, 1, slip), &history));
         const auto at = [&](Real traction, Real slipped) { return f(contact_at(traction, slipped, &history)); };
         ASSERT_EQ(value.val(), at(lambda_n, slip));
@@ -215,7 +215,9 @@ struct Pressed {
     return compliance * (at.lambda_n - known) / 2;
   }
   Real initial_compliance() const { return compliance / 2; }
-  void commit(const Contact<Real>& at, const Numbers<Real>& kept) const { kept[0] = std::max(kept[0], -at.lambda_n); }
+  void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    history[0] = std::max(history[0], -at.lambda_n);
+  }
 };
 
 /// Coulomb's law whose coefficient decreases with the length of the slip path.
@@ -228,9 +230,9 @@ struct Worn {
   T bound(const Contact<T>& at) const {
     return -coefficient / (1 + at.history[0]) * at.lambda_n;
   }
-  void commit(const Contact<Real>& at, const Numbers<Real>& kept) const {
-    kept[0] = at.history[0] + std::abs(at.plastic_jump[0] - at.last_plastic_jump[0]);
-    kept[1] += 1;
+  void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    history[0] = at.history[0] + std::abs(at.plastic_jump[0] - at.last_plastic_jump[0]);
+    history[1] += 1;
   }
 };
 

@@ -14,7 +14,7 @@ constexpr Real tangent = 0.1, before = 1e-3;  // tangent of the dilation angle; 
 template <int dim>
 class OpenFace {
  public:
-  explicit OpenFace(const Joint& law) : law_(law), kept_(law.n_history(), 0) {
+  explicit OpenFace(const Joint& law) : law_(law), saved_(law.n_history(), 0) {
     commit(ContactState::slip, 0, before, 0);
   }
   /// Returns the gap after the slip, if a fraction `share` of the slip wears the joint.
@@ -27,21 +27,21 @@ class OpenFace {
     Real w[dim], p_old[dim - 1], R[dim];
     const Real lambda[dim] = {};
     set(normal, slip, w), set(old, p_old);
-    return contact_residual<dim>(law_, augmentation(law_, 1e9), w, lambda, p_old, R, {kept_.data()});
+    return contact_residual<dim>(law_, augmentation(law_, 1e9), w, lambda, p_old, R, {saved_.data()});
   }
   void commit(ContactState state, Real normal, Real slip, Real old) {
     Real w[dim], p[dim - 1], p_old[dim - 1];
     const Real lambda[dim] = {};
     set(normal, slip, w), set(slip, p), set(old, p_old);
-    law_.commit(converged<dim>(law_, state, w, lambda, p, p_old, {kept_.data()}), {kept_.data()});
+    law_.commit(converged<dim>(law_, state, w, lambda, p, p_old, {saved_.data()}), {saved_.data()});
   }
   /// Returns w_n - g at the beginning of the next step.
   Real apart(Real normal, Real slip) const {
     Real p[dim - 1];
     set(slip, p);
-    return normal - law_.normal_gap(contact<dim>(Real(0), slip, p, p, {kept_.data()}));
+    return normal - law_.normal_gap(contact<dim>(Real(0), slip, p, p, {saved_.data()}));
   }
-  const std::vector<Real>& kept() const { return kept_; }
+  const std::vector<Real>& history() const { return saved_; }
 
  private:
   static void set(Real slip, Real (&p)[dim - 1]) {
@@ -57,14 +57,14 @@ class OpenFace {
   Contact<Real> contact_after(Real slip) const {
     Real p[dim - 1], p_old[dim - 1];
     set(slip, p), set(before, p_old);
-    auto at = contact<dim>(Real(0), slip, p, p_old, {kept_.data()});
+    auto at = contact<dim>(Real(0), slip, p, p_old, {saved_.data()});
     at.slip_of_step = slip - before;
     for (int i = 0; i < dim - 1; ++i) at.slip_direction[i] = p[i] / slip;
     return at;
   }
 
   Joint law_;
-  std::vector<Real> kept_;
+  std::vector<Real> saved_;
 };
 
 /// Checks open faces between the gaps of the unworn and the fully worn joint. Faces above the unworn gap do not wear.
@@ -121,9 +121,9 @@ TEST(OpenJoint, WearsNothingByLoadsThatItDoesNotBear) {
     Joint law = worn_by(IsotropicDamage{{0.8, 0.3, 5e-3, 5e-3}});
     law.driver = driver;
     OpenFace<3> face(law);
-    const auto kept = face.kept();
+    const auto history = face.history();
     face.commit(ContactState::open, 1.001 * face.gap(4e-3, 0), 4e-3, before);
-    EXPECT_EQ(face.kept(), kept);
+    EXPECT_EQ(face.history(), history);
   }
 }
 

@@ -149,9 +149,9 @@ TEST(Bisect, KeepsShapesTowardsAFront) {
     const auto mesh = shaken(make_box(box));
     const CellGeometry geometry(mesh.shape);
     const auto worst = [&](const GlobalMesh& of) {
-      Real least = 1;
-      for (GlobalIndex c = 0; c < of.n_cells(); ++c) least = std::min(least, geometry.scaled_jacobian(of, c)[0]);
-      return least;
+      Real minimum = 1;
+      for (GlobalIndex c = 0; c < of.n_cells(); ++c) minimum = std::min(minimum, geometry.scaled_jacobian(of, c)[0]);
+      return minimum;
     };
     Bisection bisection(mesh);
     refine_towards(front_in(box), 6, bisection);

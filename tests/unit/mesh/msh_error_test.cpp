@@ -29,22 +29,24 @@ void expect_refusals(const std::string& text, const std::vector<Change>& changes
 }
 
 /// Returns `two_squares` with the given lines in the section $Fractures.
-std::string told(const std::string& lines) {
+std::string reported(const std::string& lines) {
   return replaced(two_squares, "$Nodes", "$Fractures\n" + lines + "$EndFractures\n$Nodes");
 }
 
 TEST(MshError, Fractures) {
-  EXPECT_THAT(refusal(told("1\n1 1\n")), HasSubstr("$Fractures, line 12: fracture 1: has 0 texts in quotes"));
-  EXPECT_THAT(refusal(told("1\n1 1 \"a\" \"friction\"\n")), HasSubstr("fracture 1: has 2 texts in quotes"));
-  EXPECT_THAT(refusal(told("1\n1 1 \"a\n")), HasSubstr("lacks a quotation mark"));
-  EXPECT_THAT(refusal(told("1\n1 x \"a\"\n")), HasSubstr("the number of an entity is \"x\""));
-  EXPECT_THAT(refusal(told("2\n1 1 \"a\"\n")), HasSubstr("must be an integer"));
-  EXPECT_THAT(refusal(told("2\n1 1 \"a\" \"mu\" \"1\"\n1 2 \"a\" \"mu\" \"2\"\n")),
+  EXPECT_THAT(refusal(reported("1\n1 1\n")), HasSubstr("$Fractures, line 12: fracture 1: has 0 texts in quotes"));
+  EXPECT_THAT(refusal(reported("1\n1 1 \"a\" \"friction\"\n")), HasSubstr("fracture 1: has 2 texts in quotes"));
+  EXPECT_THAT(refusal(reported("1\n1 1 \"a\n")), HasSubstr("lacks a quotation mark"));
+  EXPECT_THAT(refusal(reported("1\n1 x \"a\"\n")), HasSubstr("the number of an entity is \"x\""));
+  EXPECT_THAT(refusal(reported("2\n1 1 \"a\"\n")), HasSubstr("must be an integer"));
+  EXPECT_THAT(refusal(reported("2\n1 1 \"a\" \"mu\" \"1\"\n1 2 \"a\" \"mu\" \"2\"\n")),
               HasSubstr("\"a\" occurs twice with different entries"));
   auto both = fractures(1);
   both.fractures["west"];
-  EXPECT_THAT(refusal(told("2\n1 1 \"a\"\n2 2 \"a\"\n"), both), HasSubstr("\"a\" is in the sets \"f1\" and \"west\""));
-  EXPECT_THAT(refusal(told("1\n1 7 \"a\"\n")), HasSubstr("element 20: its entity 1 is no fracture of the set \"f1\""));
+  EXPECT_THAT(refusal(reported("2\n1 1 \"a\"\n2 2 \"a\"\n"), both),
+              HasSubstr("\"a\" is in the sets \"f1\" and \"west\""));
+  EXPECT_THAT(refusal(reported("1\n1 7 \"a\"\n")),
+              HasSubstr("element 20: its entity 1 is no fracture of the set \"f1\""));
 }
 
 TEST(MshError, Files) {

@@ -304,14 +304,14 @@ TEST(Msh, SingleFractures) {
   const auto plain = of("");
   ASSERT_EQ(plain.single_fractures.size(), 1u);
   EXPECT_EQ(plain.single_fractures[0].name, "f1");
-  const auto told = of(
+  const auto reported = of(
       "$Fractures\n3\n2 1 \"no fracture\"\n1 4 \"absent here\"\n1 1 \"joint A\" \"angle\" \"30 deg\"\n$EndFractures\n");
-  ASSERT_EQ(told.single_fractures.size(), 2u);
-  EXPECT_EQ(told.single_fractures[1].name, "joint A");
-  EXPECT_EQ(told.single_fractures[1].set, 0);
-  EXPECT_EQ(told.single_fractures[1].properties.at("angle"), "30 deg");
-  ASSERT_EQ(told.fracture_faces.size(), 1u);
-  EXPECT_EQ(told.fracture_faces[0].single, 1);
+  ASSERT_EQ(reported.single_fractures.size(), 2u);
+  EXPECT_EQ(reported.single_fractures[1].name, "joint A");
+  EXPECT_EQ(reported.single_fractures[1].set, 0);
+  EXPECT_EQ(reported.single_fractures[1].properties.at("angle"), "30 deg");
+  ASSERT_EQ(reported.fracture_faces.size(), 1u);
+  EXPECT_EQ(reported.fracture_faces[0].single, 1);
 }
 
 }  // namespace

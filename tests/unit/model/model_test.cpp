@@ -13,9 +13,9 @@ using ::testing::HasSubstr;
 Real displacement_of(Model& model) {
   const auto view = model.field("displacement").values;
   const auto values = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
-  Real most = 0;
-  for (std::size_t k = 0; k < values.extent(0); ++k) most = std::max(most, values(k, 0));
-  return base::max_over_ranks(*model.mesh().comm, most);
+  Real maximum = 0;
+  for (std::size_t k = 0; k < values.extent(0); ++k) maximum = std::max(maximum, values(k, 0));
+  return base::max_over_ranks(*model.mesh().comm, maximum);
 }
 
 TEST(Model, StepsFollowTheLoad) {

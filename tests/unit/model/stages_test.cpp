@@ -27,9 +27,9 @@ std::string traction_of(const Scene& scene) { return scene.boundary_conditions.a
 /// Largest displacement in the direction x, m. Collective.
 Real elongation(Model& model) {
   const auto displacement = model.output("displacement").values;
-  Real most = 0;
-  for (std::size_t i = 0; i < displacement.size(); i += 2) most = std::max(most, displacement[i]);
-  return base::max_over_ranks(*model.mesh().comm, most);
+  Real maximum = 0;
+  for (std::size_t i = 0; i < displacement.size(); i += 2) maximum = std::max(maximum, displacement[i]);
+  return base::max_over_ranks(*model.mesh().comm, maximum);
 }
 
 TEST(Stages, AreOrderedByTimeAndInheritChanges) {

@@ -33,8 +33,8 @@ TEST(DirectInverse, InvertsFewAndManyUnknowns) {
   for (const int n : {few, many, shared}) {
     const Truss truss(n, true);
     const int n_rows = truss.matrix->getGlobalNumRows(), n_ranks = truss.matrix->getComm()->getSize();
-    ASSERT_EQ(n_rows <= multigrid::DirectInverse::most_dense, n == few);
-    ASSERT_EQ(n_rows >= 2 * multigrid::DirectInverse::least_of_a_rank, n == shared);
+    ASSERT_EQ(n_rows <= multigrid::DirectInverse::max_dense, n == few);
+    ASSERT_EQ(n_rows >= 2 * multigrid::DirectInverse::minimum_per_rank, n == shared);
     Vector factors(truss.matrix->getRowMap());  // unsymmetric matrix
     for (std::size_t i = 0; i < factors.getLocalLength(); ++i)
       factors.replaceLocalValue(i, 1 + 0.1 * (truss.matrix->getRowMap()->getGlobalElement(i) % 7));

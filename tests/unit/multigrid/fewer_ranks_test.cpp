@@ -42,7 +42,7 @@ struct Made {
 };
 
 /// Returns the rows (node, neighbour, motion, place) of all ranks, sorted. Collective.
-std::vector<std::vector<Real>> told(const multigrid::Nodes& nodes) {
+std::vector<std::vector<Real>> reported(const multigrid::Nodes& nodes) {
   std::vector<Real> here;
   const int m = nodes.n_modes * nodes.n_modes, width = m + 5;
   for (std::size_t i = 0; i < nodes.free.size(); ++i) {
@@ -74,7 +74,7 @@ TEST(FewerRanks, KeepTheLevelAsItIs) {
       FewerRanks moved(coarse, made.galerkin->prolongation(), nodes, n_ranks);
       const auto& A = moved.matrix();
       EXPECT_LE(multigrid::n_ranks_of(A.graph), n_ranks);
-      EXPECT_EQ(told(nodes), told(made.nodes));
+      EXPECT_EQ(reported(nodes), reported(made.nodes));
       if (n_ranks == 1) EXPECT_TRUE(nodes.beyond.node.empty());
       for (const Real damping : {0.4, 0.3}) {
         made.update(damping, skew == 0);
@@ -126,7 +126,7 @@ int iterations(const CrsMatrix& A, const Multigrid& M, bool symmetric) {
 TEST(FewerRanks, LevelsEndOnOneRank) {
   multigrid::Options options;
   options.coarse_size = 30;
-  options.least_of_a_rank = 27000;
+  options.minimum_per_rank = 27000;
   const int n = world().getSize();
   for (const Real skew : {0.0, 0.02}) {
     const Truss truss(7, true, skew, 70);

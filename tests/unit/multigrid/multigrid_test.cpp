@@ -180,14 +180,14 @@ int iterations(const CrsMatrix& A, const multigrid::Multigrid& M) {
 
 /// Contact of flat cells does not resist jumps that alternate along the long edges.
 TEST(Multigrid, TakesFewIterationsWhereFlatCellsAreInContact) {
-  const int most = Tpetra::getDefaultComm()->getSize() == 1 ? 15 : 20;
+  const int maximum = Tpetra::getDefaultComm()->getSize() == 1 ? 15 : 20;
   for (const Real h : {1.0, 0.1, 0.01}) {
     const Layers layers(14, h);
     multigrid::Multigrid M(wrapped(layers.matrix),
                            multigrid::nodes_of(multigrid::node_matrix(*layers.bulk, 1), layers.ones, layers.places), 1,
                            layers.ones);
     M.setup(wrapped(layers.matrix), true);
-    EXPECT_LE(iterations(*layers.matrix, M), most) << h;
+    EXPECT_LE(iterations(*layers.matrix, M), maximum) << h;
   }
 }
 
@@ -224,7 +224,7 @@ RCP<const fields::Matrix> in_nodes(const CrsMatrix& A, bool together) {
 }
 
 /// The result does not depend on the storage of the matrix, also if only some ranks store blocks of nodes.
-TEST(Multigrid, HasOneAnswerForAllWaysToStoreAMatrix) {
+TEST(Multigrid, HasOneSolutionForAllWaysToStoreAMatrix) {
   const Truss truss(9, true);
   const int rank = truss.map->getComm()->getRank();
   Vector b(truss.map), expected(truss.map), x(truss.map);
@@ -258,7 +258,7 @@ TEST(Multigrid, ContractsInFlatCells) {
 }
 
 /// On symmetric matrices, the algorithm for unsymmetric ones gives almost the same result; it rounds R more often.
-TEST(Multigrid, HasOneAnswerForSymmetricMatrices) {
+TEST(Multigrid, HasOneSolutionForSymmetricMatrices) {
   const Truss truss(13, true);
   Vector b(truss.map), y(truss.map), z(truss.map);
   b.randomize();

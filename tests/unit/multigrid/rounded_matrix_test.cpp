@@ -66,16 +66,16 @@ void expect_near_products() {
     const auto y = product<b>(rounded, x, wide);
     for (LocalIndex row = 0; row < b * n; ++row) {
       const std::size_t begin = A.graph.start(row / b), length = A.graph.start(row / b + 1) - begin;
-      Real sum = 0, sizes = 0, most = 1;
+      Real sum = 0, sizes = 0, maximum = 1;
       for (std::size_t k = 0; k < length; ++k)
         for (int c = 0; c < b; ++c) {
           const LocalIndex column = b * A.graph.column(begin + k) + c;
           const Real a = A.value(b * b * begin + (row % b * length + k) * b + c) * scale(row) * scale(column);
           sum += a * x(column);
           sizes += std::fabs(x(column));
-          most = std::fmax(most, std::fabs(a));
+          maximum = std::fmax(maximum, std::fabs(a));
         }
-      EXPECT_NEAR(y(row), sum, 1.01 * most / 65280 * sizes) << b << ' ' << row << ' ' << wide;
+      EXPECT_NEAR(y(row), sum, 1.01 * maximum / 65280 * sizes) << b << ' ' << row << ' ' << wide;
     }
   }
 }

@@ -50,8 +50,8 @@ struct Truss {
     for (int k = 0; k < 27; ++k) {
       const std::array<int, 3> d = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, q = {p[0] + d[0], p[1] + d[1], p[2] + d[2]};
       const int square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      const auto [least, most] = std::minmax_element(d.begin(), d.end());
-      if (few && *least < 0 && *most > 0) continue;
+      const auto [minimum, maximum] = std::minmax_element(d.begin(), d.end());
+      if (few && *minimum < 0 && *maximum > 0) continue;
       if (square == 0 || *std::min_element(q.begin(), q.end()) < 0 || std::max(q[0], q[1]) >= n || q[2] >= height)
         continue;
       const GlobalIndex other = q[0] + n * (q[1] + GlobalIndex(n) * q[2]);

@@ -157,9 +157,9 @@ TEST(ElasticPlasticJump, MeasuresDoNotSeeTheRoundingOfFarMotions) {
   }
 }
 
-/// At the anchor of the tether the residual is zero. On an open face, the residual is proportional to the displacement
-/// from the anchor. The Jacobian is the derivative of the residual in each contact state.
-TEST(ElasticPlasticJump, TetherPullsBack) {
+/// At the anchor of the proximal term the residual is zero. On an open face, the residual is proportional to the
+/// displacement from the anchor. The Jacobian is the derivative of the residual in each contact state.
+TEST(ElasticPlasticJump, ProximalTermPullsBack) {
   for (const auto& cell : all_cells) {
     ShiftedRock s(cell);
     const int dim = s.rock.dim();
@@ -167,7 +167,7 @@ TEST(ElasticPlasticJump, TetherPullsBack) {
     auto r = fields::create_like(s.x), other = fields::create_like(s.x), dx = fields::create_like(s.x);
     const std::array<Real, 3> moved{0.02, 0.03, dim == 3 ? -0.01 : 0};
     s.set({5, 0.4, 0}, {0, 0, 0});
-    system.globalisation().tether(2, s.x);
+    system.globalisation().set_proximal_term(2, s.x);
     system.raw_residual(s.x, r);
     EXPECT_NEAR(r[2]->normInf(), 0, 1e-13);
     s.set({5 + moved[0], 0.4 + moved[1], moved[2]}, {0, 0, 0});
@@ -188,22 +188,22 @@ TEST(ElasticPlasticJump, TetherPullsBack) {
       }
       EXPECT_LE(r[2]->normInf(), 1e-6 * other[2]->normInf()) << cell << " " << normal;
     }
-    system.globalisation().tether(0, s.x);
+    system.globalisation().set_proximal_term(0, s.x);
     s.set({5, 0.4, 0}, {0, 0, 0});
     system.raw_residual(s.x, r);
     EXPECT_NEAR(r[2]->normInf(), 0, 1e-13);
   }
 }
 
-/// A tether does not resist an elastic tangential jump, without plastic jump.
-TEST(ElasticPlasticJump, TetherLeavesTheElasticJumpAlone) {
+/// A proximal term does not resist an elastic tangential jump, without plastic jump.
+TEST(ElasticPlasticJump, ProximalTermLeavesTheElasticJumpAlone) {
   for (const auto& cell : all_cells) {
     ShiftedRock s(cell);
     const int dim = s.rock.dim();
     auto r = fields::create_like(s.x);
     const Real closed = 0.01 - 0.1 * 50 / (0.5 + 50);
     s.set({closed, 0, 0}, {-50, 0, 0});
-    s.rock.system->globalisation().tether(2, s.x);
+    s.rock.system->globalisation().set_proximal_term(2, s.x);
     s.set({closed, 0.15, dim == 3 ? -0.2 : 0}, {-50, 0.3, dim == 3 ? -0.4 : 0});  // w_t = lambda_t / K_t
     s.rock.system->raw_residual(s.x, r);
     for (LocalIndex f = 0; f < s.rock.mesh->n_owned_fracture_faces; ++f)

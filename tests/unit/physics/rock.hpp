@@ -67,7 +67,7 @@ struct Rock {
 
 /// Returns the system of the bulk alone if the mesh has no fracture, else of all three modules. Cells of region 1 are
 /// stiff, of region 0 soft.
-inline Rock make_rock(mesh::GlobalMesh global, const JointParameters& joint = {}, const Loads& loads = {},
+inline Rock make_rock(mesh::GlobalMesh global, const laws::JointParameters& joint = {}, const Loads& loads = {},
                       RCP<const Comm> comm = Tpetra::getDefaultComm(),
                       const std::vector<assembly::DirichletCondition>& conditions = {}) {
   global.region_names = {"soft", "stiff"};

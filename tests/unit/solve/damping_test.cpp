@@ -73,20 +73,20 @@ TEST(Damping, RescuesASingularMatrix) {
 
 /// The only step is damped, with the derivative 1. The derivative at its end is 2; the linearised solve uses this
 /// value.
-TEST(Damping, IsNoPartOfAnswers) {
+TEST(Damping, IsNoPartOfLinearizedSolves) {
   Real near = 2;
   ScalarProblem problem(
       Tpetra::getDefaultComm(), 5, [](Real x, Real, Real) { return x; },
       [&](Real x, Real, Real) { return std::abs(x) > 0.6 ? 0 : near; });
   problem.resistance = 10;
   Newton newton(problem, {});
-  auto x = problem.constant(1), answer = problem.constant(0);
+  auto x = problem.constant(1), solution = problem.constant(0);
   const auto report = newton.solve(x);
   ASSERT_TRUE(report.converged) << report.reason;
   ASSERT_EQ(problem.damps, (std::vector<Real>{0, 0.1, 0}));
   near = 5;
-  ASSERT_TRUE(newton.answer(x, problem.constant(1), answer, 1e-12).converged);
-  for (std::size_t i = 0; i < answer[0]->getLocalLength(); ++i) EXPECT_NEAR(answer[0]->getData()[i], 0.5, 1e-12);
+  ASSERT_TRUE(newton.solve_linearized(x, problem.constant(1), solution, 1e-12).converged);
+  for (std::size_t i = 0; i < solution[0]->getLocalLength(); ++i) EXPECT_NEAR(solution[0]->getData()[i], 0.5, 1e-12);
 }
 
 /// Full steps lead to -0.9 of the start, so the states change in each step. With the damping of the third step the
@@ -130,7 +130,7 @@ TEST(Damping, SaysWhereNothingHelps) {
 
 /// From 0, the path to the solution 5 leads over 3, where the merit is four thousand times as large. The step is
 /// accepted if the contact state at 3 is different.
-TEST(Damping, SearchBeginsAnewInOtherStates) {
+TEST(Damping, SearchRestartsInOtherStates) {
   const auto region = [](Real x) { return x < -1 ? 0 : x < 1e-4 ? 1 : 2; };
   for (const bool states : {true, false}) {
     ScalarProblem problem(
@@ -157,7 +157,7 @@ TEST(FreeBodies, ThatFindNoResistanceEndNewton) {
   const auto report = newton.solve(x);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.reason, "no resistance to the loads found: a stone can move along (1, 0), and meets none");
-  EXPECT_EQ(report.loose, problem.free_body);
+  EXPECT_EQ(report.floating, problem.free_body);
   for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_NEAR(x[0]->getData()[i], 3, 1e-12);
   solve::TimeStepper stepper(problem, newton, {});
   x = problem.constant(0);
@@ -179,7 +179,7 @@ TEST(FreeBodies, InEquilibriumAreReported) {
   Real t = 0;
   const auto step = stepper.advance(x, t, 1);
   EXPECT_TRUE(step.converged) << step.reason;
-  EXPECT_EQ(step.loose, "a stone");
+  EXPECT_EQ(step.floating, "a stone");
 }
 
 }  // namespace

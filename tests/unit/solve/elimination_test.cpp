@@ -180,20 +180,20 @@ TEST(LocalElimination, TakesThePlaceOfTheMatrix) {
     GridProblem sharing(Tpetra::getDefaultComm(), options);
     LocalElimination own(alone), first(sharing);
     std::unique_ptr<LocalElimination> second;
-    EXPECT_EQ(sharing.matrix().kept(0)->J(), first.condensed(0, 0));
+    EXPECT_EQ(sharing.matrix().saved(0)->J(), first.condensed(0, 0));
     EXPECT_TRUE(sharing.matrix()(0, 0).is_null());
     EXPECT_EQ(first.condensed(0, 0)->numbers().width, d);
     const auto diagonal = rcp(new Vector(alone.blocks()[0].map));
     diagonal->putScalar(0.3);
     const auto x = mixed_state(alone), zero = alone.zero();
     auto there = alone.zero(), here = alone.zero();
-    const auto n_kept = [&] {
-      const GlobalIndex here = sharing.matrix().kept(0)->rows().extent(0);
+    const auto n_history = [&] {
+      const GlobalIndex here = sharing.matrix().saved(0)->rows().extent(0);
       GlobalIndex all = 0;
       Teuchos::reduceAll(*sharing.comm(), Teuchos::REDUCE_SUM, 1, &here, &all);
       return all;
     };
-    std::vector<GlobalIndex> kept{n_kept()};
+    std::vector<GlobalIndex> saved{n_history()};
     for (const auto& [state, added] :
          {std::pair{x, RCP<Vector>()}, {zero, RCP<Vector>()}, {x, diagonal}, {zero, RCP<Vector>()}}) {
       for (auto* problem : {&alone, &sharing}) {
@@ -214,11 +214,11 @@ TEST(LocalElimination, TakesThePlaceOfTheMatrix) {
         here[b]->update(-1, *there[b], 1);
         EXPECT_LE(here[b]->normInf(), 1e-14 * there[b]->normInf());
       }
-      kept.push_back(n_kept());
+      saved.push_back(n_history());
     }
     const GlobalIndex n = diagonal->getGlobalLength(), row = d * options.nx;  // 4 rows of nodes at the ends, 3 around
                                                                               // the faces
-    EXPECT_EQ(kept, (std::vector<GlobalIndex>{3 * row, 7 * row, 7 * row, n, n}));
+    EXPECT_EQ(saved, (std::vector<GlobalIndex>{3 * row, 7 * row, 7 * row, n, n}));
   }
 }
 

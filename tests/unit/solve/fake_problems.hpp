@@ -52,7 +52,7 @@ struct GridOptions {
   bool faces = true, constraints = true;
   int singular_face = -1;  ///< a face whose bubble has no stiffness
   bool eliminate = true;   ///< bubble and traction are a local group
-  bool shares = false;     ///< shares the rows of the matrix of the springs (KeptRows)
+  bool shares = false;     ///< shares the rows of the matrix of the springs (SavedRows)
   Real mix = 0;            ///< weight of other components of u in a component of the jump
 };
 
@@ -140,13 +140,13 @@ class GridProblem : public BlockProblem, public fields::Globalisation {
     }
   }
   const BlockMatrix& matrix() const override { return matrix_; }
-  std::shared_ptr<fields::KeptRows> share(int block, const RCP<const fields::Matrix>& J) override {
+  std::shared_ptr<fields::SavedRows> share(int block, const RCP<const fields::Matrix>& J) override {
     if (!o_.shares || block > 0) return nullptr;
-    if (matrix_.kept(0))
-      matrix_.kept(0)->restore(*J);
+    if (matrix_.saved(0))
+      matrix_.saved(0)->restore(*J);
     else
-      matrix_.share(0, std::make_shared<fields::KeptRows>(J));
-    return matrix_.kept(0);
+      matrix_.share(0, std::make_shared<fields::SavedRows>(J));
+    return matrix_.saved(0);
   }
   RCP<const Vector> proximal(int block) const override { return block == 0 ? added : Teuchos::null; }
   bool symmetric() const override { return o_.eliminate; }
@@ -307,8 +307,8 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   std::vector<Real> damps;  ///< sequence of requested dampings; for several faces, the largest
   std::string free_body;    ///< name of a floating body
   std::function<char(Real)> state_of;
-  Real tether_stiffness = 0;  ///< spring constant of a tether of 1; 0: none
-  std::vector<Real> tethers;  ///< sequence of requested tether stiffnesses
+  Real proximal_stiffness = 0;       ///< spring constant of a proximal term of 1; 0: none
+  std::vector<Real> proximal_terms;  ///< sequence of requested proximal stiffnesses
 
   void damp(Real everywhere, const std::vector<Real>& here) override {
     const Real damping = here.empty() ? everywhere : std::max(everywhere, *std::max_element(here.begin(), here.end()));
@@ -316,8 +316,8 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   }
   bool has_contact = true, storing = false;
   bool stores() const override { return storing; }
-  bool tether(Real stiffness, const Evaluation& at) override {
-    tethers.push_back(stiffness);
+  bool set_proximal_term(Real stiffness, const Evaluation& at) override {
+    proximal_terms.push_back(stiffness);
     const auto values = at.x()[0]->getData();
     anchor_.assign(values.begin(), values.end());
     return has_contact;
@@ -328,7 +328,7 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
     for (std::size_t i = 0; state_of && i < x[0]->getLocalLength(); ++i) states.push_back(state_of(x[0]->getData()[i]));
     return states;
   }
-  std::string loose() const override { return free_body; }
+  std::string floating() const override { return free_body; }
   std::string balance(const Evaluation&, BlockVector&, Evaluation&) override { return free_body; }
 
   fields::Globalisation& globalisation() override { return *this; }
@@ -367,10 +367,10 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   }
 
  private:
-  Real spring() const { return tethers.empty() ? 0 : tether_stiffness * tethers.back(); }
+  Real spring() const { return proximal_terms.empty() ? 0 : proximal_stiffness * proximal_terms.back(); }
   Real pull(LocalIndex i, Real x) const { return spring() > 0 ? spring() * (x - anchor_[i]) : 0; }
 
-  std::vector<Real> anchor_;  // [unknown] x at the last tether
+  std::vector<Real> anchor_;  // [unknown] x at the last proximal term
   RCP<const Comm> comm_;
   Function f_, df_;
   std::vector<Block> blocks_;

@@ -50,7 +50,7 @@ struct Grid {
 };
 
 TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
-  for (const auto& [symmetric, most_ranks] : {std::pair{true, 9}, {false, 9}, {true, 1}, {false, 1}, {false, 2}}) {
+  for (const auto& [symmetric, max_ranks] : {std::pair{true, 9}, {false, 9}, {true, 1}, {false, 1}, {false, 2}}) {
     Grid grid(12);
     if (!symmetric) {
       Vector scale(grid.matrix->getRowMap());
@@ -58,7 +58,7 @@ TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
         scale.replaceLocalValue(i, 1 + 0.1 * (grid.matrix->getRowMap()->getGlobalElement(i) % 7));
       grid.matrix->leftScale(scale);
     }
-    const auto solver = solve::make_direct_solver({}, most_ranks);
+    const auto solver = solve::make_direct_solver({}, max_ranks);
     expect_solved(grid.matrix, grid.problem.blocks()[0], symmetric, *solver);
   }
 }
@@ -75,7 +75,7 @@ TEST(DirectSolver, SolvesWhereMostRanksHaveNoRows) {
 }
 
 TEST(DirectSolver, ReportsASingularMatrix) {
-  for (const auto& [structural, most_ranks] : {std::pair{true, 9}, {false, 9}, {true, 1}, {false, 1}, {false, 2}}) {
+  for (const auto& [structural, max_ranks] : {std::pair{true, 9}, {false, 9}, {true, 1}, {false, 1}, {false, 2}}) {
     const auto comm = Tpetra::getDefaultComm();
     std::vector<GlobalIndex> mine;
     for (int i = comm->getRank(); i < 6; i += comm->getSize()) mine.push_back(i);
@@ -84,7 +84,7 @@ TEST(DirectSolver, ReportsASingularMatrix) {
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) fill.add(i, j, structural ? (j < 3) : i * 6 + j);  // rank 1 or 2
     const auto matrix = fill.done();
-    const auto solver = solve::make_direct_solver({}, most_ranks);
+    const auto solver = solve::make_direct_solver({}, max_ranks);
     const std::string failure = solver->setup(system_of(matrix, {"s", map, 1, 1, 1, Teuchos::null, {}}, false));
     Vector b(map), x(map);
     for (std::size_t i = 0; i < b.getLocalLength(); ++i) b.replaceLocalValue(i, std::cos(map->getGlobalElement(i)));

@@ -65,7 +65,7 @@ class OpeningProblem : public ScalarProblem {
             comm, 1, [this](Real x, Real, Real) { return x * std::pow(given_ > 0 ? given_ : width(x), 3) - 1; },
             [this](Real x, Real, Real) {
               if (given_ > 0) return std::pow(given_, 3);
-              return std::pow(width(x), 3) + (x > least ? 3 * x * x * x : 0);
+              return std::pow(width(x), 3) + (x > minimum ? 3 * x * x * x : 0);
             }),
         lags_(lags) {}
 
@@ -85,8 +85,8 @@ class OpeningProblem : public ScalarProblem {
   }
 
  private:
-  static constexpr Real least = 1e-3;
-  static Real width(Real x) { return std::max(x, least); }
+  static constexpr Real minimum = 1e-3;
+  static Real width(Real x) { return std::max(x, minimum); }
   bool lags_;
   Real given_ = 0;
 };
@@ -252,7 +252,7 @@ TEST(TimeStepper, CutsAndGrowsBack) {
   EXPECT_NEAR(x[0]->normInf(), 3, 1e-12);
 }
 
-/// Returns a problem whose derivative has the wrong sign far from the solution 3, without a tether.
+/// Returns a problem whose derivative has the wrong sign far from the solution 3, without a proximal term.
 ScalarProblem misled() {
   return ScalarProblem(
       Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return x - 3; },
@@ -261,7 +261,7 @@ ScalarProblem misled() {
 
 TEST(TimeStepper, CreepsWhereNewtonFails) {
   auto problem = misled();
-  problem.tether_stiffness = 1;
+  problem.proximal_stiffness = 1;
   Newton newton(problem, {});
   TimeStepper stepper(problem, newton, {});
   auto x = problem.constant(0);
@@ -272,14 +272,14 @@ TEST(TimeStepper, CreepsWhereNewtonFails) {
   EXPECT_EQ(report.substeps, 1);
   EXPECT_EQ(problem.committed_times, (std::vector<Real>{1}));
   for (std::size_t i = 0; i < x[0]->getLocalLength(); ++i) EXPECT_NEAR(x[0]->getData()[i], 3, 1e-11);
-  ASSERT_GT(problem.tethers.size(), 3u);
-  EXPECT_EQ(problem.tethers.front(), 10);
-  EXPECT_EQ(problem.tethers.back(), 0);
+  ASSERT_GT(problem.proximal_terms.size(), 3u);
+  EXPECT_EQ(problem.proximal_terms.front(), 10);
+  EXPECT_EQ(problem.proximal_terms.back(), 0);
 }
 
-TEST(TimeStepper, HalvesThreeTimesBeforeItTethersWhereShorterStepsAreEasier) {
+TEST(TimeStepper, HalvesThreeTimesBeforeProximalContinuationWhereShorterStepsAreEasier) {
   auto problem = misled();
-  problem.tether_stiffness = 1;
+  problem.proximal_stiffness = 1;
   problem.storing = true;
   Newton newton(problem, {});
   TimeStepper stepper(problem, newton, {});
@@ -289,7 +289,7 @@ TEST(TimeStepper, HalvesThreeTimesBeforeItTethersWhereShorterStepsAreEasier) {
   ASSERT_TRUE(report.converged) << report.reason;
   EXPECT_EQ(report.cuts, 3);
   EXPECT_EQ(problem.committed_times.front(), 0.125);
-  EXPECT_FALSE(problem.tethers.empty());
+  EXPECT_FALSE(problem.proximal_terms.empty());
 }
 
 /// Newton directions that are twenty times too long: after the first step, step lengths of 1/16 reduce the error to a
@@ -307,14 +307,14 @@ TEST(Newton, GivesUpShortStepsWhereShorterTimeStepsAreEasier) {
   }
 }
 
-/// The same problem without contact: no iteration is spent on tethers without effect.
-TEST(TimeStepper, DoesNotTetherWhereThereIsNoContact) {
-  const auto iterations = [](bool tethers) {
+/// The same problem without contact: no iteration is spent on proximal terms without effect.
+TEST(TimeStepper, HasNoProximalContinuationWithoutContact) {
+  const auto iterations = [](bool proximal_terms) {
     auto problem = misled();
     problem.has_contact = false;
     Newton newton(problem, {});
     solve::TimeSteppingOptions options;
-    options.tethers = tethers;
+    options.proximal_continuation = proximal_terms;
     options.max_halvings = 2;
     TimeStepper stepper(problem, newton, options);
     auto x = problem.constant(0);

@@ -13,14 +13,14 @@ TEST(Reuse, KeepsWhatServesAndRenewsWhatIsWorn) {
   Reuse reuse;
   EXPECT_FALSE(reuse.may_keep());
   reuse.make(true);
-  EXPECT_EQ(reuse.most_iterations(1e-8), 0);
+  EXPECT_EQ(reuse.max_iterations(1e-8), 0);
   reuse.learn(16, 1e-8, 1e-8);  // two iterations per digit
   ASSERT_TRUE(reuse.may_keep());
   reuse.keep();
-  EXPECT_EQ(reuse.most_iterations(1e-4), 8 + Reuse::most_more);
+  EXPECT_EQ(reuse.max_iterations(1e-4), 8 + Reuse::max_more);
   EXPECT_FALSE(reuse.gives_up(9, true));
   reuse.learn(9, 1e-4, 1e-4);
-  EXPECT_EQ(reuse.state(), State::kept);
+  EXPECT_EQ(reuse.state(), State::reused);
   reuse.learn(11, 1e-4, 1e-4);
   EXPECT_EQ(reuse.state(), State::worn);
   EXPECT_TRUE(reuse.is_of_earlier_system());
@@ -34,11 +34,11 @@ TEST(Reuse, KeepsWhatServesAndRenewsWhatIsWorn) {
 TEST(Reuse, IsCarefulOnceASolveWithUntriedCyclesIsLong) {
   Reuse reuse;
   reuse.make(false);
-  EXPECT_EQ(reuse.most_iterations(1e-8), Reuse::most_unchecked);
-  EXPECT_FALSE(reuse.gives_up(Reuse::most_unchecked - 1, false));  // the library stopped before the limit
-  EXPECT_FALSE(reuse.gives_up(Reuse::most_unchecked, true));
+  EXPECT_EQ(reuse.max_iterations(1e-8), Reuse::max_unchecked);
+  EXPECT_FALSE(reuse.gives_up(Reuse::max_unchecked - 1, false));  // the library stopped before the limit
+  EXPECT_FALSE(reuse.gives_up(Reuse::max_unchecked, true));
   EXPECT_FALSE(reuse.is_careful());
-  EXPECT_TRUE(reuse.gives_up(Reuse::most_unchecked, false));
+  EXPECT_TRUE(reuse.gives_up(Reuse::max_unchecked, false));
   EXPECT_TRUE(reuse.is_careful());
   reuse.make(true);
   EXPECT_FALSE(reuse.gives_up(1000, false));  // no better preconditioner is available
@@ -50,7 +50,7 @@ TEST(Reuse, LearnsNothingFromSolvesThatGainLessThanADigit) {
   reuse.learn(20, 1e-10, 1e-10);
   reuse.learn(7, 0.5, 1e-10);
   reuse.keep();
-  EXPECT_EQ(reuse.most_iterations(1e-10), 20 + Reuse::most_more);
+  EXPECT_EQ(reuse.max_iterations(1e-10), 20 + Reuse::max_more);
   reuse.lose();
   EXPECT_FALSE(reuse.may_keep());
 }

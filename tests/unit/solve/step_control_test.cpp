@@ -88,7 +88,7 @@ TEST(StepControl, EndsStepsAtAllStopsAndMakesTheLastTwoBeforeThemEqual) {
 }
 
 TEST(StepControl, GrowsNoFasterThanItMayAndNotAfterARejection) {
-  StepControl control({.tolerance = 1e-2, .first = 0.01, .smallest = 1e-9, .largest = 1, .most_growth = 2}, {1});
+  StepControl control({.tolerance = 1e-2, .first = 0.01, .smallest = 1e-9, .largest = 1, .max_growth = 2}, {1});
   EXPECT_EQ(control.judge(0.01, {{"error", 1e-9, 1}}, 1), Verdict::accepted);
   EXPECT_DOUBLE_EQ(control.memory().length, 0.02);
   EXPECT_EQ(control.judge(0.02, {{"error", 0.04, 1}}, 1), Verdict::rejected);
@@ -122,7 +122,7 @@ TEST(StepControl, LimitsRejectionsInARow) {
   for (auto verdict = Verdict::rejected; verdict == Verdict::rejected && n < 1000; ++n, error *= 0.7)
     if (verdict = control.judge(control.memory().length, {{"error", error, 1}}, 1); verdict != Verdict::rejected)
       EXPECT_EQ(verdict, Verdict::limited);
-  EXPECT_EQ(n, StepControl::most_rejections + 1);
+  EXPECT_EQ(n, StepControl::max_rejections + 1);
 }
 
 /// Alternating iteration counts do not determine the step length.

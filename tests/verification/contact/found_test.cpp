@@ -12,13 +12,13 @@ std::string failure(const std::string& scene, const std::vector<std::string>& ov
 TEST(Found, PiecesCutOut) { EXPECT_EQ(failure("contact/network_cut_2d.xml"), ""); }
 
 /// On slip reversal, faces lose their dilation and thus their friction. They slip at once to a distant state. Only
-/// tethers that do not resist the elastic jump lead there.
+/// proximal terms that do not resist the elastic jump lead there.
 TEST(Found, SoftJointsThatDilate) {
   EXPECT_EQ(failure("contact/network_soft_2d.xml", {"Time.end=3", "Time.steps=3"}), "");
 }
 
-/// The bending stiffness of the layers is small by (thickness/length)^2. Tethers that are weak relative to the rock at
-/// a fracture still constrain the layers.
+/// The bending stiffness of the layers is small by (thickness/length)^2. Proximal terms that are weak relative to the
+/// rock at a fracture still constrain the layers.
 TEST(Found, ThinLayers) { EXPECT_EQ(failure("contact/thin_layers_2d.xml"), ""); }
 
 /// The elastic jumps are long. A face that opens has moved far and dilates; it must slide and not return elastically.

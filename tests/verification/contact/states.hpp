@@ -9,7 +9,7 @@ namespace sprekk::tests {
 struct Run {
   std::string failure;
   std::vector<int> newton_iterations, cuts;
-  std::vector<bool> loose;  ///< whether a floating block was reported
+  std::vector<bool> floating;  ///< whether a floating block was reported
   std::vector<fields::BlockVector> states;
   std::vector<std::string> names;  ///< [block]
   std::vector<Real> scales;        ///< [block] kinematic scales at the end
@@ -22,7 +22,7 @@ inline Run run(const model::Scene& scene) {
     const auto report = model.step_to(t);
     result.newton_iterations.push_back(report.newton_iterations);
     result.cuts.push_back(report.cuts);
-    result.loose.push_back(!report.loose.empty());
+    result.floating.push_back(!report.floating.empty());
     result.failure = report.reason;
     if (!report.converged) break;
     result.failure.clear();

@@ -63,7 +63,7 @@ TEST(Uniqueness, EndsWhereDilationIsTooStrong) {
   }
 }
 
-TEST(Uniqueness, IsToldOfAScene) {
+TEST(Uniqueness, IsReportedOfAScene) {
   const auto doubt = [](int dim, Real tangent, const std::vector<std::string>& others = {}) {
     auto overrides = others;
     overrides.insert(overrides.begin(),
@@ -89,9 +89,11 @@ TEST(Uniqueness, IsToldOfAScene) {
   }
 }
 
-/// Returns the failure message of the first failed step, with a limit of iterations and without bisection and tethers.
+/// Returns the failure message of the first failed step, with a limit of iterations and without bisection and proximal
+/// continuation.
 std::string reason(const std::string& scene, int iterations, std::vector<std::string> overrides) {
-  for (const std::string other : {"Time.maximum halvings=0", "Time.tethers=false"}) overrides.push_back(other);
+  for (const std::string other : {"Time.maximum halvings=0", "Time.proximal continuation=false"})
+    overrides.push_back(other);
   overrides.push_back(fmt::format("Solver.maximum iterations={}", iterations));
   model::Model model(read_scene(scene, overrides), Tpetra::getDefaultComm());
   for (const Real t : model.scene().time.times())

@@ -134,7 +134,7 @@ TEST(CoupledEstimate, CoolingOfAColumn) {
       scene.materials.at("rock").permeability.clear();
       scene.materials.at("rock").thermal_expansion = Expression(expansion);
       scene.heat->initial_temperature = Expression(flat ? "cos(pi*y/2)" : "cos(pi*z/2)");
-      hold_temperature(scene, flat ? "north" : "top", "0");
+      prescribe_temperature(scene, flat ? "north" : "top", "0");
       scenes.push_back(scene);
     }
     compare(cell, through("heat flow", flat ? "north" : "top"), -conductivity * M_PI / 2 * left * width, 2, scenes);
@@ -165,8 +165,8 @@ TEST(CoupledEstimate, HeatThatAFluidCarries) {
           material.permeability = {Expression(1)};
         }
       }
-      hold_temperature(scene, "west", "0");
-      hold_temperature(scene, "east", "1");
+      prescribe_temperature(scene, "west", "0");
+      prescribe_temperature(scene, "east", "1");
       scenes.push_back(scene);
     }
     model::Quantity temperature;
@@ -198,7 +198,7 @@ TEST(CoupledEstimate, SameOnAnyNumberOfRanks) {
     scene.time.steps = 2;
     warm(scene, 2, 0.3, 0.7, 0.5);
     rock.thermal_expansion = Expression(0.01);
-    hold_temperature(scene, flat ? "north" : "top", "1");
+    prescribe_temperature(scene, flat ? "north" : "top", "1");
     const RCP<const Comm> alone = rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
     for (const std::string what : flat ? std::vector{"opening", "pressure", "temperature"} : std::vector{"opening"}) {
       SCOPED_TRACE(cell + ", " + what);

@@ -21,7 +21,7 @@ model::Scene box(const std::string& cell, int n, const std::string& scheme) {
   return scene;
 }
 
-void hold_sides(model::Scene& scene, const std::string& pressure) {
+void prescribe_sides(model::Scene& scene, const std::string& pressure) {
   for (const std::string side : {"west", "east", "south", "north"}) hold(scene, side, pressure);
 }
 
@@ -43,21 +43,21 @@ Real total(model::Model& model, const std::string& what) {
 struct Rock {
   std::string cell, scheme;
   int n;
-  Real most;  ///< largest error
+  Real maximum;  ///< largest error
 };
 
 /// Thiem (1906): p - p_w = Q mu/(2 pi k h) ln(r/r_w), here with p_w = 0 and Q mu/(2 pi k h) = 1. Tests the pressure in
 /// the well for the rate Q, and the rate for p_w = 0. Anisotropic rock: distances of Peaceman (1983). The well is in
 /// the middle of a cell or on an edge.
 TEST(Wells, ThiemsSolution) {
-  for (const auto& [cell, scheme, n, most] : std::vector<Rock>{{"quadrilateral", "tpfa", 21, 1e-3},
-                                                               {"quadrilateral", "tpfa", 61, 1e-4},
-                                                               {"quadrilateral", "mimetic", 21, 0.02},
-                                                               {"triangle", "rt0", 21, 0.02},
-                                                               {"triangle", "rt0", 20, 0.02},
-                                                               {"hexahedron", "tpfa", 11, 4e-3},
-                                                               {"hexahedron", "mimetic", 11, 0.02},
-                                                               {"tetrahedron", "rt0", 9, 0.03}})
+  for (const auto& [cell, scheme, n, maximum] : std::vector<Rock>{{"quadrilateral", "tpfa", 21, 1e-3},
+                                                                  {"quadrilateral", "tpfa", 61, 1e-4},
+                                                                  {"quadrilateral", "mimetic", 21, 0.02},
+                                                                  {"triangle", "rt0", 21, 0.02},
+                                                                  {"triangle", "rt0", 20, 0.02},
+                                                                  {"hexahedron", "tpfa", 11, 4e-3},
+                                                                  {"hexahedron", "mimetic", 11, 0.02},
+                                                                  {"tetrahedron", "rt0", 9, 0.03}})
     for (const Real ratio : {1.0, 4.0})
       for (const bool by_rate : {true, false}) {
         const bool flat = is_flat(cell);
@@ -66,8 +66,8 @@ TEST(Wells, ThiemsSolution) {
         k = {base::Expression(ratio), base::Expression(1)};
         if (!flat) k.emplace_back(1);
         const Real a = std::pow(ratio, 0.25);  // isotropic in x/a and a y
-        hold_sides(scene,
-                   fmt::format("0.5*log((x/{0:.17g})^2+(y*{0:.17g})^2) - log({1:.17g})", a, radius * (a + 1 / a) / 2));
+        prescribe_sides(
+            scene, fmt::format("0.5*log((x/{0:.17g})^2+(y*{0:.17g})^2) - log({1:.17g})", a, radius * (a + 1 / a) / 2));
         auto& well = add_well(scene, flat ? std::vector<Real>{0, 0} : std::vector<Real>{0, 0, 0, 0, 0, 1});
         const Real Q = 2 * M_PI * std::sqrt(ratio) / mu;
         (by_rate ? well.rate : well.pressure) = base::Expression(by_rate ? -Q : 0);
@@ -75,8 +75,8 @@ TEST(Wells, ThiemsSolution) {
         ASSERT_TRUE(model.step_to(1).converged) << cell;
         const Real drawdown = std::log(0.5 / radius);
         const auto where = fmt::format("{} {} {}", cell, scheme, ratio);
-        EXPECT_NEAR(total(model, "pressure") / drawdown, 0, by_rate ? most : 1e-15) << where;
-        EXPECT_NEAR(total(model, "rate") / -Q, 1, by_rate ? 1e-12 : 1.1 * most) << where;
+        EXPECT_NEAR(total(model, "pressure") / drawdown, 0, by_rate ? maximum : 1e-15) << where;
+        EXPECT_NEAR(total(model, "rate") / -Q, 1, by_rate ? 1e-12 : 1.1 * maximum) << where;
         EXPECT_NEAR(total(model, "in rock") / total(model, "rate"), 1, 1e-12);
       }
 }
@@ -96,7 +96,7 @@ TEST(Wells, InAFracture) {
       joint.initial_aperture = aperture;
       joint.tangential_permeability = 10;
       const Real T = aperture * 10 / mu, slant = oblique ? std::sqrt(2.0) : 1;
-      hold_sides(scene, fmt::format("0.5*log(x^2+y^2) - log({:.17g})", radius * (1 + slant) / 2));
+      prescribe_sides(scene, fmt::format("0.5*log(x^2+y^2) - log({:.17g})", radius * (1 + slant) / 2));
       const Real lean = oblique ? 0.25 : 0;
       auto& well = add_well(scene, {0, -lean, 0.25, 0, lean, 0.75});
       well.pressure = base::Expression(0);

@@ -68,7 +68,7 @@ TEST(FluidChange, EquallyWarmItIsAnotherFluid) {
       if (changes) change(scene, 0.3, 0.7);
       hold(scene, "west", "1");
       hold(scene, "north", "2");
-      for (const std::string side : {"west", "north"}) hold_temperature(scene, side, "1");
+      for (const std::string side : {"west", "north"}) prescribe_temperature(scene, side, "1");
       auto& well = scene.flow->wells["well"];
       well.points = flat ? std::vector<Real>{0.2, 0.3} : std::vector<Real>{0.2, 0.2, 0.2, 0.3, 0.8, 0.3};
       well.radius = 1e-3;
@@ -99,8 +99,8 @@ TEST(FluidChange, FlowsByItsViscosity) {
       change(scene, 0, b);
       hold(scene, "west", "1");
       hold(scene, "east", "0");
-      hold_temperature(scene, "west", "0");
-      hold_temperature(scene, "east", "1");
+      prescribe_temperature(scene, "west", "0");
+      prescribe_temperature(scene, "east", "1");
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const auto of = [](Real resistance) { return 1 / (viscosity * resistance); };
@@ -134,8 +134,8 @@ TEST(FluidChange, WeighsByItsDensity) {
     scene.bulk.gravity.back() = -2;
     const std::string up = flat ? "north" : "top";
     hold(scene, up, "0");
-    hold_temperature(scene, up, "1");
-    hold_temperature(scene, flat ? "south" : "bottom", "0");
+    prescribe_temperature(scene, up, "1");
+    prescribe_temperature(scene, flat ? "south" : "bottom", "0");
     model::Model model(scene, Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(1).converged) << cell;
     const auto at_rest = [&](const Vector3& x, const auto&) {
@@ -211,7 +211,7 @@ TEST(FluidChange, JacobianIsItsDerivative) {
       warm(scene, 0.5, 1.5, 0.8, 1.2);
       change(scene, 0.4, 0.7);
       hold(scene, "north", "1");
-      hold_temperature(scene, "north", "1");
+      prescribe_temperature(scene, "north", "1");
       for (const bool by_rate : {false, true}) {
         const std::string name = by_rate ? "by rate" : "by pressure";
         auto& well = scene.flow->wells[name];
@@ -260,13 +260,13 @@ void grows_at(const std::string& place, Real Ra) {
       auto& joint = scene.materials.at("joint");
       joint.tangential_permeability = Expression(1);
       joint.filling_conductivity = Expression(1);
-      hold_temperature(scene, below, "1", "a");
-      hold_temperature(scene, above, "0", "a");
+      prescribe_temperature(scene, below, "1", "a");
+      prescribe_temperature(scene, above, "0", "a");
     } else {
       scene.mesh.fractures.clear();
       scene.fractures.clear();
-      hold_temperature(scene, below, "1");
-      hold_temperature(scene, above, "0");
+      prescribe_temperature(scene, below, "1");
+      prescribe_temperature(scene, above, "0");
     }
     scene.heat->initial_temperature = Expression(fmt::format("1 - {0} + {1}*cos(pi*x)*sin(pi*{0})", z, small));
     change(scene, a, 0);

@@ -20,8 +20,8 @@ TEST(HeatInFractures, AFilledJointIsAResistanceInSeries) {
     auto& joint = scene.materials.at("joint");
     joint.initial_aperture = Expression(5e-3);
     joint.filling_conductivity = Expression(0.6);
-    hold_temperature(scene, "south", "10");
-    hold_temperature(scene, "north", "0");
+    prescribe_temperature(scene, "south", "10");
+    prescribe_temperature(scene, "north", "0");
     model::Model model(scene, Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(1).converged) << cell;
     EXPECT_LT(error(model, "heat flux", [&](const auto&, const auto&) { return Vector3{0, q, 0}; }), 1e-9) << cell;
@@ -43,9 +43,9 @@ TEST(HeatInFractures, MixesWhereTheyMeet) {
       inject(scene, "south", "b", 1);
       inject(scene, out, out == std::string("east") ? "a" : "b", -1.2);
       hold(scene, other, "0", other == std::string("east") ? "a" : "b");
-      hold_temperature(scene, "west", "20", "a");
-      hold_temperature(scene, "south", "80", "b");
-      hold_temperature(scene, "west", "20");
+      prescribe_temperature(scene, "west", "20", "a");
+      prescribe_temperature(scene, "south", "80", "b");
+      prescribe_temperature(scene, "west", "20");
       model::Model model(scene, Tpetra::getDefaultComm());
       const auto report = model.step_to(1e9);
       ASSERT_TRUE(report.converged) << cell << report.reason;
@@ -75,8 +75,8 @@ TEST(HeatInRock, IsCarriedWithTheFluid) {
       west.boundary = "west";
       west.flux = Expression(-Pe / 2);
       hold(scene, "east", "0");
-      hold_temperature(scene, "west", "0");
-      hold_temperature(scene, "east", "1");
+      prescribe_temperature(scene, "west", "0");
+      prescribe_temperature(scene, "east", "1");
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const auto exact = [Pe = Pe](const Vector3& x, const auto&) {
@@ -100,7 +100,7 @@ TEST(HeatInFractures, NothingChangesWhereAllIsEquallyWarm) {
   auto scene = read_scene("poro/injection_2d.xml", {"Mesh.cells={20, 20}"});
   warm(scene, 350, 2.5, 2.2e6, 4.2e6);
   scene.heat->wells["injector"].temperature = Expression(350);
-  for (const std::string side : {"west", "east"}) hold_temperature(scene, side, "350");
+  for (const std::string side : {"west", "east"}) prescribe_temperature(scene, side, "350");
   model::Model model(scene, Tpetra::getDefaultComm());
   for (const Real t : {1800.0, 3600.0, 7200.0, 36000.0}) ASSERT_TRUE(model.step_to(t).converged) << t;
   const auto same = [](const auto&, const auto&) { return Vector3{350}; };
@@ -173,11 +173,11 @@ TEST(HeatInFractures, IsInBalanceWhileAperturesChange) {
     scene.time.scheme = scheme;
     model::Model model(scene, Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(0.5).converged) << cell;
-    Real before = heat_content(model, rc, c), most = 0, gained = 0;
+    Real before = heat_content(model, rc, c), maximum = 0, gained = 0;
     for (int step = 2; step <= 14; ++step) {
       ASSERT_TRUE(model.step_to(0.5 * step).converged) << cell;
       const Real inflow = heat_that_enters(model, 0.5 * step, 0.5, c), after = heat_content(model, rc, c);
-      most = std::max(most, std::abs(inflow));
+      maximum = std::max(maximum, std::abs(inflow));
       const Real gains = after - before;
       const bool counts_two = scene.time.scheme == "BDF2";
       if (!counts_two || step > 2)
@@ -185,7 +185,7 @@ TEST(HeatInFractures, IsInBalanceWhileAperturesChange) {
       before = after;
       gained = gains;
     }
-    EXPECT_GT(most, 1e4) << cell;
+    EXPECT_GT(maximum, 1e4) << cell;
   }
 }
 

@@ -44,8 +44,8 @@ model::Scene block(const std::string& cell, const Units& u) {
   scene.heat->of_friction = true;
   hold(scene, "west", fmt::format("{:.17g}", 3e6 / u.stress));
   hold(scene, "east", "0");
-  hold_temperature(scene, "west", fmt::format("{:.17g}", 300 / u.temperature));
-  hold_temperature(scene, "east", fmt::format("{:.17g}", 350 / u.temperature));
+  prescribe_temperature(scene, "west", fmt::format("{:.17g}", 300 / u.temperature));
+  prescribe_temperature(scene, "east", fmt::format("{:.17g}", 350 / u.temperature));
   auto &below = scene.boundary_conditions["floor"], &above = scene.boundary_conditions["lid"];
   below.boundary = "south";
   below.displacement.assign(dim, Expression(0));
@@ -58,14 +58,14 @@ model::Scene block(const std::string& cell, const Units& u) {
 }
 
 /// Frame-independent values of owned entities, and the iterations of all steps.
-struct Answer {
+struct Solution {
   std::map<std::string, std::vector<Real>> values;
   std::vector<int> iterations;
 };
 
-Answer answer(const model::Scene& scene, const Units& u) {
+Solution solution_of(const model::Scene& scene, const Units& u) {
   model::Model model(scene, Tpetra::getDefaultComm());
-  Answer found;
+  Solution found;
   for (const Real t : {0.5e6, 1e6, 2e6}) {
     const auto report = model.step_to(t / u.time);
     EXPECT_TRUE(report.converged) << report.reason;
@@ -94,7 +94,7 @@ Answer answer(const model::Scene& scene, const Units& u) {
 }
 
 /// Compares all values, within `tolerance` of the largest; iterations may differ by one. Collective.
-void expect_same(const Answer& one, const Answer& other, Real tolerance) {
+void expect_same(const Solution& one, const Solution& other, Real tolerance) {
   for (const auto& [name, values] : one.values) {
     const auto& others = other.values.at(name);
     ASSERT_EQ(values.size(), others.size()) << name;
@@ -108,7 +108,7 @@ void expect_same(const Answer& one, const Answer& other, Real tolerance) {
 }
 
 /// Checks that the fracture slips, opens and cools. Collective.
-void expect_change(const Answer& found) {
+void expect_change(const Solution& found) {
   Real here[2] = {0, 400}, slip = 0, coldest = 0;
   for (const Real s : found.values.at("slip")) here[0] = std::max(here[0], s);
   for (const Real T : found.values.at("fracture temperature")) here[1] = std::min(here[1], T);
@@ -122,13 +122,13 @@ void expect_change(const Answer& found) {
 TEST(ThermoPoroelasticity, UnitsDoNotMatter) {
   for (const std::string cell : all_cells) {
     SCOPED_TRACE(cell);
-    const auto known = answer(block(cell, {"m, Pa, s, K"}), {"m, Pa, s, K"});
+    const auto known = solution_of(block(cell, {"m, Pa, s, K"}), {"m, Pa, s, K"});
     expect_change(known);
     for (const Units& u : {Units{"km, GPa, d, K", 1e3, 1e9, 86400, 1},
                            {"mm, MPa, ms, K", 1e-3, 1e6, 1e-3, 1},
                            {"m, Pa, s, 100 K", 1, 1, 1, 100}}) {
       SCOPED_TRACE(u.name);
-      expect_same(known, answer(block(cell, u), u), 1e-8);
+      expect_same(known, solution_of(block(cell, u), u), 1e-8);
     }
   }
 }
@@ -137,12 +137,12 @@ TEST(ThermoPoroelasticity, FramesDoNotMatter) {
   for (const std::string cell : all_cells) {
     SCOPED_TRACE(cell);
     const auto scene = block(cell, {"m"});
-    const auto known = answer(scene, {"m"});
+    const auto known = solution_of(scene, {"m"});
     for (const Real degrees : {33.0, -140.0}) {
       SCOPED_TRACE(degrees);
       auto turned = scene;
       turn(turned, degrees, is_flat(cell) ? Vector3{0, 0, 1} : Vector3{1, 2, -1});
-      expect_same(known, answer(turned, {"m"}), 1e-8);
+      expect_same(known, solution_of(turned, {"m"}), 1e-8);
     }
   }
 }

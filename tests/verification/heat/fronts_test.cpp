@@ -56,7 +56,7 @@ TEST(HeatInFractures, AFractureWarmsTheRock) {
                                  : rock_around_fracture(cell, {0, -8, 0}, {20, 8, 1}, {2 * n, 4 * n, 1}, 1);
       inject(scene, "west", "a", aperture * v);
       hold(scene, "east", "0", "a");
-      hold_temperature(scene, "west", "1", "a");
+      prescribe_temperature(scene, "west", "1", "a");
       errors.push_back(error_of_front(scene, t, 2 * n, {20.0 * 5 / 24, 20.0 * 11 / 24, 20.0 * 17 / 24}, exact));
     }
     EXPECT_LT(errors[1], 0.05) << cell;
@@ -76,7 +76,7 @@ TEST(HeatInFractures, ParallelFracturesWarmTheRockBetweenThem) {
                                  : rock_around_fracture(cell, {0, -5, 0}, {60, 5, 1}, {6 * n, 2 * n, 1}, 1);
       inject(scene, "west", "a", aperture * 1e-2);
       hold(scene, "east", "0", "a");
-      hold_temperature(scene, "west", "1", "a");
+      prescribe_temperature(scene, "west", "1", "a");
       // Mean of the two faces adjacent to x = 50 m.
       const Real h = 60.0 / (6 * n);
       model::Model model(scene, Tpetra::getDefaultComm());
@@ -176,7 +176,7 @@ TEST(ThermalStress, AColdFrontMakesAJointSlipAndOpen) {
         scene.regions["bulk"].temperature = Expression("t > 0 ? 300 - 50*erfc(abs(y - 20)/sqrt(4e-6*t)) : 300");
       for (const std::string side : {"south", "north"})
         if (dim == 3) {
-          hold_temperature(scene, side, "250", scene.mesh.fractures.begin()->first);
+          prescribe_temperature(scene, side, "250", scene.mesh.fractures.begin()->first);
           auto& rolls = scene.boundary_conditions[side + " rolls"];
           rolls.boundary = side;
           rolls.displacement = {Expression("free"), Expression(0), Expression("free")};

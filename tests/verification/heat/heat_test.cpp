@@ -33,7 +33,7 @@ std::vector<std::string> sides(const model::Scene& scene) {
                                       : std::vector<std::string>{"west", "east", "south", "north", "bottom", "top"};
 }
 
-void hold_side(model::Scene& scene, const std::string& side, const std::string& temperature) {
+void prescribe_side(model::Scene& scene, const std::string& side, const std::string& temperature) {
   scene.boundary_conditions[side].boundary = side;
   scene.boundary_conditions[side].temperature = base::Expression(temperature);
 }
@@ -64,7 +64,8 @@ TEST(Heat, ConstantGradientIsExact) {
     const int dim = is_flat(cell) ? 2 : 3;
     using Tensor = std::vector<base::Expression>;
     scene.materials.at("rock").thermal_conductivity = dim == 2 ? Tensor{4, 2, 1} : Tensor{4, 2, 3, 1, 0.4, 0.6};
-    for (const auto& side : sides(scene)) hold_side(scene, side, dim == 2 ? "0.7*x - 0.3*y" : "0.7*x - 0.3*y + 0.45*z");
+    for (const auto& side : sides(scene))
+      prescribe_side(scene, side, dim == 2 ? "0.7*x - 0.3*y" : "0.7*x - 0.3*y + 0.45*z");
     Vector3 flux{};
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) flux[i] -= K[i][j] * gradient[j];
@@ -87,7 +88,7 @@ TEST(Heat, CapacityMayDependOnThePlace) {
     std::vector<std::vector<Real>> found;
     for (const bool by_regions : {false, true}) {
       auto scene = box(cell, 4);
-      hold_side(scene, "west", "t");
+      prescribe_side(scene, "west", "t");
       auto& rock = scene.materials.at("rock");
       rock.heat_capacity = by_regions ? base::Expression(3) : base::Expression("x < 0.5 ? 3 : 6");
       if (by_regions) {
@@ -111,8 +112,8 @@ TEST(Heat, TransferIsAResistanceInSeries) {
   const Real q = 4 / 1.75;
   for (const std::string cell : all_cells) {
     auto scene = box(cell, 4);
-    hold_side(scene, "west", "5");
-    hold_side(scene, "east", "1");
+    prescribe_side(scene, "west", "5");
+    prescribe_side(scene, "east", "1");
     scene.boundary_conditions.at("west").heat_transfer_coefficient = base::Expression(1);
     scene.boundary_conditions.at("east").heat_transfer_coefficient = base::Expression(4);
     scene.materials.at("rock").heat_capacity = 0;
@@ -148,7 +149,7 @@ TEST(Heat, ErrorsShrinkWithTheCells) {
     std::vector<std::array<Real, 2>> error;
     for (int n : {4, 8}) {
       auto scene = box(cell, dim == 2 ? 4 * n : n);
-      for (const auto& side : sides(scene)) hold_side(scene, side, "0");
+      for (const auto& side : sides(scene)) prescribe_side(scene, side, "0");
       scene.heat->source = base::Expression(fmt::format("{}*pi^2*{}", 2 * dim, bump));
       scene.materials.at("rock").heat_capacity = 0;
       model::Model model(scene, Tpetra::getDefaultComm());
@@ -189,8 +190,8 @@ TEST(Heat, IsInBalance) {
   for (const std::string cell : all_cells) {
     auto scene = box(cell, 3);
     scene.heat->initial_temperature = base::Expression("10 + x*y");
-    hold_side(scene, "west", "20 + t");
-    hold_side(scene, "north", "0");
+    prescribe_side(scene, "west", "20 + t");
+    prescribe_side(scene, "north", "0");
     scene.boundary_conditions.at("north").heat_transfer_coefficient = base::Expression(0.7);
     auto& south = scene.boundary_conditions["south"];
     south.boundary = "south";
@@ -239,7 +240,7 @@ TEST(Heat, GoesBesideMechanics) {
   for (const std::string cell : all_cells) {
     auto both = box(cell, 3);
     const int dim = is_flat(cell) ? 2 : 3;
-    hold_side(both, "west", "20");
+    prescribe_side(both, "west", "20");
     auto& rock = both.materials.at("rock");
     rock.E = 100;
     rock.nu = 0.25;
@@ -274,7 +275,7 @@ TEST(Heat, ARegionIsHeld) {
     middle[0] = 0.5;
     scene.mesh.regions["warm"] = {scene.mesh.lower_corner, middle};
     scene.regions["warm"].temperature = base::Expression(7);
-    hold_side(scene, "east", "1");
+    prescribe_side(scene, "east", "1");
     scene.materials.at("rock").heat_capacity = 0;
     model::Model model(scene, Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(1).converged) << cell;
@@ -291,8 +292,8 @@ TEST(Heat, ARegionIsHeld) {
 TEST(Heat, JacobianIsItsDerivative) {
   for (const std::string cell : all_cells) {
     auto scene = box(cell, 3);
-    hold_side(scene, "west", "1");
-    hold_side(scene, "north", "2");
+    prescribe_side(scene, "west", "1");
+    prescribe_side(scene, "north", "2");
     scene.boundary_conditions.at("north").heat_transfer_coefficient = base::Expression("1 + x");
     model::Model model(scene, Tpetra::getDefaultComm());
     auto& system = model.system();

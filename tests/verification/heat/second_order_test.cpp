@@ -27,7 +27,7 @@ model::Scene stream(const std::string& cell, bool in_fracture, int n, Real lengt
     west.boundary = "west";
     west.flux = Expression(-v);
     hold(scene, "east", "0");
-    hold_temperature(scene, "west", "1");
+    prescribe_temperature(scene, "west", "1");
   } else {
     scene.mesh.fractures["a"].upper_corner[0] = length;
     warm(scene, 0, 1e-12 * D, 0, 1);
@@ -35,7 +35,7 @@ model::Scene stream(const std::string& cell, bool in_fracture, int n, Real lengt
     scene.materials.at("joint").filling_conductivity = Expression(D);
     inject(scene, "west", "a", aperture * v);
     hold(scene, "east", "0", "a");
-    hold_temperature(scene, "west", "1", "a");
+    prescribe_temperature(scene, "west", "1", "a");
   }
   scene.heat->advection = "second order";
   return scene;
@@ -104,8 +104,8 @@ TEST(SecondOrder, SettlesToTheSteadyState) {
     std::vector<Real> errors;
     for (const int n : {20, 40}) {
       auto scene = stream(cell, false, n, 1, Pe, 1);
-      hold_temperature(scene, "west", "0");
-      hold_temperature(scene, "east", "1");
+      prescribe_temperature(scene, "west", "0");
+      prescribe_temperature(scene, "east", "1");
       model::Model model(scene, Tpetra::getDefaultComm());
       const int steps = 6 * n;
       for (int k = 1; k <= steps; ++k) ASSERT_TRUE(model.step_to(0.3 * k / steps).converged) << cell;
@@ -125,14 +125,14 @@ TEST(SecondOrder, KeepsBoundsAndEnergy) {
       auto scene = stream(cell, false, n, 1, 1, 1e-3);
       if (wave) {
         scene.materials.at("rock").thermal_conductivity = {Expression(1e-12)};
-        hold_temperature(scene, "west", "0");
+        prescribe_temperature(scene, "west", "0");
         scene.heat->initial_temperature = Expression("x > 0.2 && x < 0.4 ? 1 : 0");
       }
       model::Model model(scene, Tpetra::getDefaultComm());
       for (int k = 1; k <= 20; ++k) {
         ASSERT_TRUE(model.step_to(0.01 * k).converged) << cell;
-        const auto [least, largest] = range(model, "temperature");
-        EXPECT_GE(least, -1e-10) << cell << k;
+        const auto [minimum, largest] = range(model, "temperature");
+        EXPECT_GE(minimum, -1e-10) << cell << k;
         EXPECT_LE(largest, 1 + 1e-10) << cell << k;
         if (k == 20 && !wave) {
           EXPECT_GT(largest, 1 - 1e-3) << cell;
@@ -159,7 +159,7 @@ TEST(SecondOrder, IsInBalanceWhereFracturesMeet) {
     inject(scene, "west", "a", 1);
     inject(scene, "east", "a", -0.4);
     hold(scene, "north", "0", "b");
-    hold_temperature(scene, "west", "1", "a");
+    prescribe_temperature(scene, "west", "1", "a");
     model::Model model(scene, Tpetra::getDefaultComm());
     const auto& mesh = model.mesh();
     struct Sums {
@@ -191,8 +191,8 @@ TEST(SecondOrder, IsInBalanceWhereFracturesMeet) {
         EXPECT_NEAR(now.content - before, gained, 1e-5 * dt * 3) << cell << k;
       }
       before = now.content;
-      const auto [least, largest] = range(model, "fracture temperature");
-      EXPECT_GE(least, -1e-8) << cell << k;
+      const auto [minimum, largest] = range(model, "fracture temperature");
+      EXPECT_GE(minimum, -1e-8) << cell << k;
       EXPECT_LE(largest, 1 + 1e-8) << cell << k;
     }
     EXPECT_GT(sums().east, 0.9) << cell;

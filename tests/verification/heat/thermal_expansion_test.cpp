@@ -238,7 +238,7 @@ TEST(ThermoPoroelasticity, JacobianIsItsDerivative) {
       scene.boundary_conditions["floor"].boundary = "south";
       scene.boundary_conditions["floor"].displacement.assign(is_flat(cell) ? 2 : 3, Expression(0));
       hold(scene, "north", "1");
-      hold_temperature(scene, "north", "3");
+      prescribe_temperature(scene, "north", "3");
       for (const bool by_rate : {false, true}) {
         const std::string name = by_rate ? "by rate" : "by pressure";
         auto& well = scene.flow->wells[name];

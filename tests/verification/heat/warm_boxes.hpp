@@ -18,8 +18,8 @@ inline void warm(model::Scene& scene, Real T_0, Real conductivity, Real capacity
   }
 }
 
-inline void hold_temperature(model::Scene& scene, const std::string& side, const std::string& T,
-                             const std::string& fracture = "") {
+inline void prescribe_temperature(model::Scene& scene, const std::string& side, const std::string& T,
+                                  const std::string& fracture = "") {
   auto& condition = scene.boundary_conditions[side + fracture + " is warm"];
   condition.boundary = side;
   condition.temperature = Expression(T);

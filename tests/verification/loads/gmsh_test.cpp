@@ -185,7 +185,7 @@ void expect_as_box(const std::string& file, int n, Real height, const std::array
   EXPECT_GT(n_state[1] + n_state[2], 0);
 }
 
-TEST(Gmsh, HexahedraAnswerAsABox) {
+TEST(Gmsh, HexahedraEqualABox) {
   for (const std::string order : {"", "_order2"}) {
     expect_as_box("hexahedra" + order, 4, 2, {1, 3});
     expect_as_box("cubes" + order, 2, 2, {0, 2});

@@ -19,11 +19,11 @@ model::FactorOfSafety safety(const std::string& scene, const std::vector<std::st
 
 void expect_between(const model::FactorOfSafety& found, Real exact) {
   ASSERT_TRUE(found.lost);
-  EXPECT_LE(found.least, exact * (1 + rounding));
+  EXPECT_LE(found.stable, exact * (1 + rounding));
   EXPECT_GE(*found.lost, exact * (1 - rounding));
-  EXPECT_LE(*found.lost, found.least * (1 + tolerance));
+  EXPECT_LE(*found.lost, found.stable * (1 + tolerance));
   for (const auto& reduction : found.reductions) {
-    EXPECT_EQ(reduction.stands, reduction.factor <= found.least) << reduction.factor;
+    EXPECT_EQ(reduction.stands, reduction.factor <= found.stable) << reduction.factor;
     EXPECT_EQ(reduction.stands, reduction.reason.empty()) << reduction.reason;
   }
 }
@@ -65,7 +65,7 @@ TEST(FactorOfSafety, OfASlopeWhoseCrestOpens) {
     const auto found =
         safety("slope_2d.xml", {fmt::format("Mesh file.path={}/tests/data/meshes/{}.msh", source_dir(), mesh)}, 1e-4);
     ASSERT_TRUE(found.lost) << mesh;
-    EXPECT_LE(found.least, exact * (1 + rounding)) << mesh;
+    EXPECT_LE(found.stable, exact * (1 + rounding)) << mesh;
     EXPECT_GE(*found.lost, exact * (1 - 1e-3)) << mesh;
     EXPECT_THAT(found.states, testing::Contains(testing::StartsWith("slip on 1 of 1 fractures"))) << mesh;
   }
@@ -97,7 +97,7 @@ TEST(FactorOfSafety, OfAWedgeOnTwoPlanes) {
 TEST(FactorOfSafety, WhereNothingSlides) {
   const auto found = safety("plane_2d.xml", {"Bulk.gravity={0, -9.81}", "Mesh.cells={4, 4}"});
   EXPECT_FALSE(found.lost);
-  EXPECT_EQ(found.least, 100);
+  EXPECT_EQ(found.stable, 100);
 }
 
 TEST(FactorOfSafety, Refuses) {

@@ -121,9 +121,10 @@ class Formulas {
   /// Returns the closure V(N), m.
   Real closure(Real N) const {
     const Real K = value("normal stiffness", std::numeric_limits<Real>::infinity());
-    const Real most = material_.closure == "linear" ? std::numeric_limits<Real>::infinity()
-                                                    : value("maximum closure", std::numeric_limits<Real>::infinity());
-    return most == 0 ? 0 : N / (K + N / most);
+    const Real maximum = material_.closure == "linear"
+                             ? std::numeric_limits<Real>::infinity()
+                             : value("maximum closure", std::numeric_limits<Real>::infinity());
+    return maximum == 0 ? 0 : N / (K + N / maximum);
   }
   Real retained() const { return value("irrecoverable part of closure", 0); }
 
@@ -205,8 +206,8 @@ class Formulas {
       return residual + (mu - residual) * std::max(1 - s / value("weakening distance", 1), Real(0));
     }
     if (kind == "Coulomb") return mu;
-    const Real phi = value("residual friction angle", 30), most = value("largest friction angle", 70) - phi;
-    const Real rough = N() > 0 ? std::clamp(JRC_ * std::log10(JCS_ / N()), Real(0), most) : most;
+    const Real phi = value("residual friction angle", 30), maximum = value("largest friction angle", 70) - phi;
+    const Real rough = N() > 0 ? std::clamp(JRC_ * std::log10(JCS_ / N()), Real(0), maximum) : maximum;
     if (kind == "Barton-Choubey") return std::tan(degree * (phi + rough));
     const Real x = s / peak_slip_;
     return std::tan(degree * (phi * std::min(x / 0.3, Real(1)) + rough * mobilised(x)));

@@ -34,11 +34,11 @@ TEST(RoughJoint, SlabsSlideAtTheirAngle) {
     const Real angle = angles.at(curve.specimen);
     EXPECT_NEAR(static_cast<Real>(curve.states.size()), std::min(angle, Real(89)), 1);  // one per degree
     EXPECT_EQ(curve.failure.empty(), angle == 90);
-    const std::string told = "the last state is that at t = ";
-    const auto at = curve.failure.find(told);
+    const std::string reported = "the last state is that at t = ";
+    const auto at = curve.failure.find(reported);
     if (angle == 90) continue;
     ASSERT_NE(at, std::string::npos);
-    EXPECT_NEAR(std::stod(curve.failure.substr(at + told.size())), angle, 1e-7);
+    EXPECT_NEAR(std::stod(curve.failure.substr(at + reported.size())), angle, 1e-7);
   }
 }
 

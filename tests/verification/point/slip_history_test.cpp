@@ -213,18 +213,18 @@ TEST(Damage, DissipatesInEveryStep) {
                                             "Point.column normal stiffness=2",
                                             "Point.path={-0.15, 0.6*sin(pi*t) + 0.2*sin(2.7*t)}"};
       if (driver != "slip") overrides.push_back("Materials.joint.reference stress=0.3");
-      Real p = 0, opens = 0, most = 0;
+      Real p = 0, opens = 0, maximum = 0;
       int slips = 0;
       for (const auto& s : drive("damage.xml", overrides)) {
         const Real work = s.traction[1] * (s.plastic[1] - p) + s.traction[0] * (s.plastic[0] - opens);
         EXPECT_GE(work, -1e-13) << damage << ", " << driver << ", t = " << s.t;
         slips += s.contact == ContactState::slip;
-        most = std::max(most, work);
+        maximum = std::max(maximum, work);
         p = s.plastic[1];
         opens = s.plastic[0];
       }
       EXPECT_GT(slips, 100);
-      EXPECT_GT(most, 1e-4);
+      EXPECT_GT(maximum, 1e-4);
     }
 }
 

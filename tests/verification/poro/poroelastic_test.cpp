@@ -225,8 +225,8 @@ TEST(Poroelasticity, NoFluidIsLost) {
                  opening = model.output("opening");
       // Sum over cells and facets; stabilisation fluxes between them cancel.
       for (const char* what : {"volume", "exchange"}) {
-        const auto kept = model.field(std::string("poroelastic coupling: ") + what).values;
-        const auto content = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), kept);
+        const auto saved = model.field(std::string("poroelastic coupling: ") + what).values;
+        const auto content = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), saved);
         for (std::size_t k = 0; k < content.extent(0); ++k) here += content(k, 0);
       }
       mesh::for_shape(mesh.shape, [&](auto shape) {

@@ -49,7 +49,7 @@ model::Scene parted_box(const std::string& cell, Real permeability) {
   return scene;
 }
 
-void hold_rim(model::Scene& scene, const std::string& pressure, bool flat) {
+void prescribe_rim(model::Scene& scene, const std::string& pressure, bool flat) {
   for (const std::string side : {"west", "east", "south", "north"})
     if (!flat || side == "west" || side == "east") hold(scene, side, pressure);
 }
@@ -78,14 +78,14 @@ TEST(WellInAJoint, FollowsThePresentAperture) {
         scene.materials.at("joint").entry("joint roughness coefficient") = base::Expression(48);
       }
       const Real T = T_of(rough ? wide * wide * 1e6 / (48 * 48 * std::sqrt(48.0)) : wide);
-      hold_rim(scene, flat ? "0" : fmt::format("0.5*log(x^2+y^2) - log({:.17g})", radius), flat);
+      prescribe_rim(scene, flat ? "0" : fmt::format("0.5*log(x^2+y^2) - log({:.17g})", radius), flat);
       const Real Q = flat ? 4 * T / (1 + 2 * radius) : -2 * M_PI * T, p = flat ? 1 : 0;
       auto& well = scene.flow->wells.at("well");
       (by_rate ? well.rate : well.pressure) = base::Expression(by_rate ? Q : p);
       const auto found = totals_of(scene);
-      const Real most = flat ? 1e-5 : 0.02, drawdown = flat ? 1 : std::log(0.5 / radius);
-      EXPECT_NEAR(found.at("in a") / Q, 1, most);
-      EXPECT_NEAR((found.at("pressure") - p) / drawdown, 0, most);
+      const Real maximum = flat ? 1e-5 : 0.02, drawdown = flat ? 1 : std::log(0.5 / radius);
+      EXPECT_NEAR(found.at("in a") / Q, 1, maximum);
+      EXPECT_NEAR((found.at("pressure") - p) / drawdown, 0, maximum);
     }
 }
 
@@ -100,7 +100,7 @@ TEST(WellInAJoint, IsLikeOneInAFractureThatWide) {
         scene.mesh.cells = is_flat(cell) ? std::vector<int>{3, 2} : std::vector<int>{3, 3, 2};
         scene.flow->compressibility = compressibility;
         scene.materials.at("rock").porosity = 0;
-        hold_rim(scene, "0.1*x", is_flat(cell));
+        prescribe_rim(scene, "0.1*x", is_flat(cell));
         auto& well = scene.flow->wells.at("well");
         (by_rate ? well.rate : well.pressure) = base::Expression(by_rate ? 4 * T : 1);
         const auto found = totals_of(scene);

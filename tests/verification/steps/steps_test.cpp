@@ -40,9 +40,9 @@ std::vector<model::StepTaken> go(const model::Scene& scene) {
 TEST(ChosenSteps, GrowInNumberAsTheirOrderSays) {
   const std::map<std::string, std::pair<int, Real>> cases = {{"implicit Euler", {1, 5e-4}}, {"BDF2", {2, 1e-4}}};
   for (const auto& [scheme, numbers] : cases) {
-    const auto& [order, least] = numbers;
+    const auto& [order, minimum] = numbers;
     std::vector<Real> n;
-    for (const Real tolerance : {4 * least, least})
+    for (const Real tolerance : {4 * minimum, minimum})
       n.push_back(
           static_cast<Real>(go(chosen("verification/terzaghi_2d.xml", tolerance, {"Time.scheme=" + scheme})).size()));
     EXPECT_NEAR(std::log(n[1] / n[0]) / std::log(4), 1.0 / order, 0.15) << scheme << ": " << n[0] << ", " << n[1];

@@ -57,7 +57,7 @@ void expect_dissipation(const std::string& name, const std::vector<std::string>&
   SCOPED_TRACE(name);
   model::Model model(read_scene(name, overrides), Tpetra::getDefaultComm());
   const int dim = model.mesh().dim();
-  Real most = 0, least = 0;
+  Real maximum = 0, minimum = 0;
   int slips = 0;
   run(model, [&](const Faces& now, const Faces& before) {
     for (std::size_t f = 0; f < now.state.size(); ++f) {
@@ -66,15 +66,15 @@ void expect_dissipation(const std::string& name, const std::vector<std::string>&
         const auto k = f * dim + i;
         work += now.traction[k] * (now.plastic[k] - before.plastic[k]);
       }
-      most = std::max(most, work);
-      least = std::min(least, work);
+      maximum = std::max(maximum, work);
+      minimum = std::min(minimum, work);
       slips += now.state[f] == 2;
     }
   });
   const auto& comm = *model.mesh().comm;
-  most = base::max_over_ranks(comm, most);
-  EXPECT_GE(least, -1e-10 * most);
-  EXPECT_GT(most, 0);
+  maximum = base::max_over_ranks(comm, maximum);
+  EXPECT_GE(minimum, -1e-10 * maximum);
+  EXPECT_GT(maximum, 0);
   EXPECT_GT(base::sum_over_ranks(comm, slips), 50);
 }
 

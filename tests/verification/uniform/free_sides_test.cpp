@@ -7,13 +7,13 @@ namespace sprekk::tests {
 namespace {
 
 /// Compared quantities of a fracture of unit length.
-struct Answer {
+struct Solution {
   Vector3 force;                    ///< resultant traction per width
   Vector3 jump_centre, jump_side;   ///< at the centre of the fracture and at its end x = 0; needs nodes there
   Vector3 above_centre, above_end;  ///< displacement of the side + at the centre and at x = 1
 };
 
-Answer operator-(const Answer& a, const Answer& b) {
+Solution operator-(const Solution& a, const Solution& b) {
   return {difference(a.force, b.force), difference(a.jump_centre, b.jump_centre), difference(a.jump_side, b.jump_side),
           difference(a.above_centre, b.above_centre), difference(a.above_end, b.above_end)};
 }
@@ -34,10 +34,10 @@ Vector3 displacement_at(model::Model& model, mesh::Side side, Real x) {
   return {all[0] / all[3], all[1] / all[3], all[2] / all[3]};
 }
 
-Answer answer(model::Model& model) {
+Solution solution_of(model::Model& model) {
   const auto at = [&](mesh::Side side, Real x) { return displacement_at(model, side, x); };
   const Outputs out(model);
-  Answer a;
+  Solution a;
   for (int i = 0; i < 3; ++i) a.force[i] = mean(model, out["traction"], i);
   a.jump_centre = difference(at(mesh::plus, 0.5), at(mesh::minus, 0.5));
   a.jump_side = difference(at(mesh::plus, 0), at(mesh::minus, 0));
@@ -76,9 +76,9 @@ struct Errors {
 Errors errors(int dim, const model::Scene& scene) {
   model::Model model(scene, Tpetra::getDefaultComm());
   EXPECT_TRUE(model.step_to(1).converged);
-  const Answer compressed = answer(model);
+  const Solution compressed = solution_of(model);
   EXPECT_TRUE(model.step_to(2).converged);
-  const Answer sheared = answer(model) - compressed;
+  const Solution sheared = solution_of(model) - compressed;
   return {std::abs(sheared.force[0] / 0.49003 - 1),
           std::abs(compressed.force[dim - 1] / 2.75091 + 1),
           std::abs(sheared.jump_centre[0] - 0.2894),
@@ -140,7 +140,7 @@ TEST(FreeSides, Push) {
                                 "Solver.Linear solver.type=direct"}),
                          Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(2).converged);
-      const Answer a = answer(model);
+      const Solution a = solution_of(model);
       const Real symmetric = d.cell != "tetrahedron" ? 1e-12 : d.order == 1 ? 5e-6 : 1e-7;
       EXPECT_NEAR(a.jump_centre[0], 0.999999999984, symmetric);
       EXPECT_NEAR(a.above_centre[0], 0.999999999992, symmetric);

@@ -63,11 +63,11 @@ TEST(SlipHistory, WeakeningOnEveryMesh) {
 
 /// Returns the largest runaway slip of all faces. Collective.
 Real runaway(model::Model& model) {
-  Real most = 0;
+  Real maximum = 0;
   for (const auto& output : model.system().outputs(model.state()))
     for (const Real slip : output.values)
-      if (output.name == "runaway slip") most = std::max(most, slip);
-  return base::max_over_ranks(*model.mesh().comm, most);
+      if (output.name == "runaway slip") maximum = std::max(maximum, slip);
+  return base::max_over_ranks(*model.mesh().comm, maximum);
 }
 
 /// The bound decreases faster than the column unloads (by 1.2 or 4.5 against 2/3), so slip jumps: friction that

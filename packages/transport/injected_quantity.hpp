@@ -13,7 +13,7 @@ namespace sprekk::transport {
 /// Adds c q (u - v) to the row of u at each connection with an inflow q > 0. v is the value of u in the injected fluid.
 /// This is a difference as in make_advection(). Connections with outflow add nothing. q is prescribed, or W (p_w - p);
 /// for a compressible fluid W (e_w - e)/c_f. On faces with conduits W is the index times the present transmissivity.
-class Brought {
+class InjectedQuantity {
  public:
   /// Adds a connection to a row. Ignores rows of other ranks. `face`: owned fracture face, required with conduits.
   void add(LocalIndex row, Real index, bool by_pressure, LocalIndex face);
@@ -23,9 +23,9 @@ class Brought {
             const std::vector<laws::Conduit>& conduits, const std::optional<FluidChange>& change);
   /// Control of one connection in a step.
   struct Control {
-    Real driver;  ///< q, m^3/s, or the pressure in the well, Pa
-    Real value;   ///< v
-    bool brings;  ///< false: the injected fluid has the u of its surroundings
+    Real driver;      ///< q, m^3/s, or the pressure in the well, Pa
+    Real value;       ///< v
+    bool prescribes;  ///< false: the injected fluid has the u of its surroundings
   };
   /// Sets the controls, in the order of add().
   void set(const std::vector<Control>& controls);
@@ -43,9 +43,9 @@ class Brought {
   Real capacity_ = 0;
   std::vector<LocalIndex> rows_, faces_;
   std::vector<Real> indices_;
-  std::vector<char> by_pressure_, kept_;
+  std::vector<char> by_pressure_, owned_;
   ConstView<LocalIndex*> row_, face_;
-  ConstView<char*> held_, brings_;
+  ConstView<char*> held_, prescribes_;
   ConstView<Real*> index_, driver_, value_;
   ConstView<laws::Conduit*> conduit_;
 };

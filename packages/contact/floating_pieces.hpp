@@ -1,7 +1,7 @@
 // Floating pieces of rock, supported neither by boundary conditions nor by the present contact.
 #pragma once
 
-#include "contact/grip.hpp"
+#include "contact/constraint.hpp"
 #include "contact/rigid_motion.hpp"
 #include "fields/layout.hpp"
 #include "fields/types.hpp"
@@ -17,11 +17,11 @@ namespace sprekk::contact {
 /// move as a rigid body. Nothing resists this motion, and the Jacobian is singular. The free motions follow from the
 /// contact constraints between pairs of pieces, summed over their faces; a face acts at its centre. All members are
 /// collective unless they return stored data.
-class LoosePieces {
+class FloatingPieces {
  public:
   /// displacement: layout of the field of `supports`. volumes: [local cell], m^3 (m^2 in 2D).
-  LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement, const std::vector<Support>& supports,
-              const std::vector<Real>& volumes);
+  FloatingPieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement, const std::vector<Support>& supports,
+                 const std::vector<Real>& volumes);
 
   /// Returns whether boundary conditions alone leave a piece free. If not, no other member is needed. Stored data.
   bool possible() const { return !candidates_.empty(); }
@@ -35,10 +35,10 @@ class LoosePieces {
   /// Sets u [local node, component] to rigid mode k in pieces treated by remove_rigid(), and to 0 in others. Local.
   void set_rigid(int k, fields::Vector& ghosted) const;
 
-  /// Finds the free motions for the grips [owned fracture face].
-  void find(const std::vector<Grip>& grips);
+  /// Finds the free motions for the contact constraints [owned fracture face].
+  void find(const std::vector<Constraint>& constraints);
   /// Returns whether find() found a free motion. Stored data.
-  bool any() const { return !loose_.empty(); }
+  bool any() const { return !floating_.empty(); }
 
   /// Returns the diagonal that makes the Jacobian regular, [owned unknown]: 1e-4 of the stiffness of the softest piece
   /// against deformation, in proportion to the volume. It is zero except in floating pieces. Stored data.
@@ -60,7 +60,8 @@ class LoosePieces {
   void add(const std::vector<Real>& s, const Motion& motion, fields::Vector& displacement) const;
   /// Returns the work on the motion, [group], N m (N in 2D), of a residual [owned unknown] and the excess tractions.
   /// The residual is the negative force on the rock. The work is zero in equilibrium under the tractions of the laws.
-  std::vector<Real> work(const Motion& motion, const fields::Vector& residual, const std::vector<Grip>& grips) const;
+  std::vector<Real> work(const Motion& motion, const fields::Vector& residual,
+                         const std::vector<Constraint>& constraints) const;
   /// Face that slides under constant forces and may continue to slide. A motion v adds `along` . [[v]] to its slip
   /// `done`.
   struct Slide {
@@ -73,7 +74,7 @@ class LoosePieces {
   struct Obstacle {
     LocalIndex face;  ///< owned
     mesh::Vector normal;
-    Real least;
+    Real minimum;
   };
   /// Coordinates x of all free motions: v = nearest + sum_k x_k axes[k], [floating piece]. The distance is |x|.
   struct Places {
@@ -96,9 +97,9 @@ class LoosePieces {
 
   /// Returns the motion of the selected groups only; empty if none is selected. Stored data.
   Motion selected(const Motion& motion, const std::function<bool(int)>& group_is) const;
-  /// most_modes: largest number of independent motions of a group. mode: k-th motion of each group with more than k.
+  /// max_modes: largest number of independent motions of a group. mode: k-th motion of each group with more than k.
   /// Stored data.
-  int most_modes() const;
+  int max_modes() const;
   Motion mode(int k) const;
   /// Returns one of the free motions, a translation if there is one. Stored data.
   Motion first() const;
@@ -133,9 +134,9 @@ class LoosePieces {
   void measure_pieces(const fields::Layout& displacement, const std::vector<Real>& volumes);
   void find_ties(const fields::Layout& displacement);
   void pair_up();
-  void hold(const std::vector<Support>& supports);
-  void sum_pairs(const std::vector<Grip>& grips);
-  std::vector<int> unheld() const;
+  void constrain(const std::vector<Support>& supports);
+  void sum_pairs(const std::vector<Constraint>& constraints);
+  std::vector<int> unconstrained() const;
   std::vector<std::vector<int>> coupled(const std::vector<int>& pieces) const;
   std::vector<Real> resistance(const std::vector<int>& pieces) const;
   void find_motions(const std::vector<int>& pieces);
@@ -161,8 +162,8 @@ class LoosePieces {
   std::vector<RigidBlock> inertia_;                 // [piece] sum over nodes
   std::vector<int> candidates_;                     // pieces that boundary conditions alone do not support
   std::vector<RigidBlock> pairs_sum_;               // [3 pair + (aa, ab, bb)]
-  std::vector<int> loose_;                          // floating pieces
-  std::vector<int> loose_number_;                   // [piece] index in loose_, or -1
+  std::vector<int> floating_;                       // floating pieces
+  std::vector<int> floating_number_;                // [piece] index in floating_, or -1
   std::vector<Group> groups_;                       // in the order of their first pieces
   RCP<fields::Vector> stiffness_, proximal_;
   Real contrast_ = 1;

@@ -1,6 +1,6 @@
 // Position of floating pieces nearest to a given state, without overlap with other pieces.
 #include "contact/least_distance.hpp"
-#include "contact/loose_pieces.hpp"
+#include "contact/floating_pieces.hpp"
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -30,30 +30,30 @@ std::vector<std::vector<Real>> gather_rows(const Comm& comm, const std::vector<s
 
 }  // namespace
 
-Vector LoosePieces::jump(LocalIndex f, const std::vector<RigidRow>& motion) const {
+Vector FloatingPieces::jump(LocalIndex f, const std::vector<RigidRow>& motion) const {
   const auto& face = mesh_->fracture_faces[f];
   const auto on = [&](int side) {
-    const int piece = mesh_->cell_piece[face.cell[side]], number = loose_number_[piece];
+    const int piece = mesh_->cell_piece[face.cell[side]], number = floating_number_[piece];
     return number < 0 ? Vector{} : rigid_displacement(frames_[piece], motion[number], face.centre);
   };
   return on(mesh::plus) - on(mesh::minus);
 }
 
-bool LoosePieces::is_beside(LocalIndex f) const {
+bool FloatingPieces::is_beside(LocalIndex f) const {
   const auto& cell = mesh_->fracture_faces[f].cell;
   return pair_of_[f] >= 0 &&
-         (loose_number_[mesh_->cell_piece[cell[0]]] >= 0 || loose_number_[mesh_->cell_piece[cell[1]]] >= 0);
+         (floating_number_[mesh_->cell_piece[cell[0]]] >= 0 || floating_number_[mesh_->cell_piece[cell[1]]] >= 0);
 }
 
 /// Returns the free motions as [group][mode][floating piece].
-std::vector<LoosePieces::Motions> LoosePieces::motions_of_groups() const {
+std::vector<FloatingPieces::Motions> FloatingPieces::motions_of_groups() const {
   const auto modes = rigid_modes(dim());
   const int m = static_cast<int>(modes.size());
   std::vector<Motions> all;
   for (const auto& group : groups_) {
     all.emplace_back();
     for (const auto& mode : group.modes) {
-      all.back().emplace_back(loose_.size(), RigidRow{});
+      all.back().emplace_back(floating_.size(), RigidRow{});
       for (std::size_t c = 0; c < mode.size(); ++c) all.back().back()[group.first + c / m][modes[c % m]] = mode[c];
     }
   }
@@ -61,13 +61,13 @@ std::vector<LoosePieces::Motions> LoosePieces::motions_of_groups() const {
 }
 
 /// Returns |u + v|^2 in the norm of the proximal term, [group], from N^T P N and N^T P u of each piece. Collective.
-std::vector<LoosePieces::Form> LoosePieces::distance_form(const std::vector<Motions>& motions,
-                                                          const fields::Vector& displacement) const {
+std::vector<FloatingPieces::Form> FloatingPieces::distance_form(const std::vector<Motions>& motions,
+                                                                const fields::Vector& displacement) const {
   const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto p = proximal_->getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<Real> sums(loose_.size() * 42, 0);
+  std::vector<Real> sums(floating_.size() * 42, 0);
   for (std::size_t k = 0; k < piece_of_.size(); ++k) {
-    const int number = loose_number_[piece_of_[k]];
+    const int number = floating_number_[piece_of_[k]];
     for (int i = 0; i < dim() && number >= 0; ++i) {
       const auto row = rigid_row(frames_[piece_of_[k]], node(static_cast<LocalIndex>(k)), i);
       const Real weight = p(k * dim() + i, 0);
@@ -80,7 +80,7 @@ std::vector<LoosePieces::Form> LoosePieces::distance_form(const std::vector<Moti
   sums = base::sum_over_ranks(*mesh_->comm, sums);
   std::vector<Form> forms;
   for (const auto& group : groups_) forms.emplace_back(group.modes.size());
-  for (std::size_t l = 0; l < loose_.size(); ++l) {
+  for (std::size_t l = 0; l < floating_.size(); ++l) {
     const int g = group_of(static_cast<int>(l));
     const Real* sum = &sums[l * 42];
     const std::size_t n = motions[g].size();
@@ -97,15 +97,15 @@ std::vector<LoosePieces::Form> LoosePieces::distance_form(const std::vector<Moti
 }
 
 /// Returns sum_f |f| (along . [[v]] + done)^2, [group]. Collective.
-std::vector<LoosePieces::Form> LoosePieces::slip_form(const std::vector<Motions>& motions,
-                                                      const std::vector<Slide>& slides) const {
+std::vector<FloatingPieces::Form> FloatingPieces::slip_form(const std::vector<Motions>& motions,
+                                                            const std::vector<Slide>& slides) const {
   std::vector<Form> forms;
   for (const auto& group : groups_) forms.emplace_back(group.modes.size());
   for (const auto& slide : slides) {
     if (!is_beside(slide.face)) continue;
     const auto& face = mesh_->fracture_faces[slide.face];
     const int group = group_of(
-        std::max(loose_number_[mesh_->cell_piece[face.cell[0]]], loose_number_[mesh_->cell_piece[face.cell[1]]]));
+        std::max(floating_number_[mesh_->cell_piece[face.cell[0]]], floating_number_[mesh_->cell_piece[face.cell[1]]]));
     std::vector<Real> row;
     for (const auto& motion : motions[group]) row.push_back(mesh::dot(slide.along, jump(slide.face, motion)));
     const std::size_t n = row.size();
@@ -124,7 +124,8 @@ std::vector<LoosePieces::Form> LoosePieces::slip_form(const std::vector<Motions>
 /// Computes generalised eigenvectors of slip form and distance form, group by group. In their coordinates both forms
 /// are diagonal. The weight of vectors with slip is their share of the slip form. The weight of others is very small,
 /// so that they yield if an obstacle involves both kinds.
-LoosePieces::Places LoosePieces::places(const fields::Vector& displacement, const std::vector<Slide>& slides) const {
+FloatingPieces::Places FloatingPieces::places(const fields::Vector& displacement,
+                                              const std::vector<Slide>& slides) const {
   constexpr Real little = 1e-8;
   const auto motions = motions_of_groups();
   auto distance = distance_form(motions, displacement), slip = slip_form(motions, slides);
@@ -141,7 +142,7 @@ LoosePieces::Places LoosePieces::places(const fields::Vector& displacement, cons
     largest = std::max(largest, values[n - 1]);
     share.push_back(values);
   }
-  Places places{std::vector<RigidRow>(loose_.size(), RigidRow{}), {}, std::sqrt((largest > 0 ? largest : 1) * size)};
+  Places places{std::vector<RigidRow>(floating_.size(), RigidRow{}), {}, std::sqrt((largest > 0 ? largest : 1) * size)};
   for (std::size_t g = 0; g < groups_.size(); ++g)
     for (std::size_t k = 0; k < motions[g].size(); ++k) {
       const bool slips = share[g][k] > negligible * negligible * largest;
@@ -149,10 +150,10 @@ LoosePieces::Places LoosePieces::places(const fields::Vector& displacement, cons
       const Real* x = &slip[g].matrix[k * vector.size()];
       const Real there = -std::inner_product(vector.begin(), vector.end(), x, Real(0)) / (slips ? share[g][k] : 1);
       const Real weight = slips ? share[g][k] : largest > 0 ? little * largest : 1;
-      places.axes.emplace_back(loose_.size(), RigidRow{});
+      places.axes.emplace_back(floating_.size(), RigidRow{});
       for (std::size_t r = 0; r < vector.size(); ++r)
         for (std::size_t l = groups_[g].first;
-             l < loose_.size() && group_of(static_cast<int>(l)) == static_cast<int>(g); ++l)
+             l < floating_.size() && group_of(static_cast<int>(l)) == static_cast<int>(g); ++l)
           for (int c = 0; c < 6; ++c) {
             places.axes.back()[l][c] += x[r] / std::sqrt(weight) * motions[g][r][l][c];
             places.nearest[l][c] += x[r] * there * motions[g][r][l][c];
@@ -161,8 +162,8 @@ LoosePieces::Places LoosePieces::places(const fields::Vector& displacement, cons
   return places;
 }
 
-std::optional<std::vector<RigidRow>> LoosePieces::nearest(const Places& places, const std::vector<Obstacle>& obstacles,
-                                                          Real unit) const {
+std::optional<std::vector<RigidRow>> FloatingPieces::nearest(const Places& places,
+                                                             const std::vector<Obstacle>& obstacles, Real unit) const {
   const int n = static_cast<int>(places.axes.size());
   const Real scale = places.unit * unit;
   std::vector<std::vector<Real>> here, G;
@@ -170,16 +171,16 @@ std::optional<std::vector<RigidRow>> LoosePieces::nearest(const Places& places, 
     here.emplace_back();
     for (const auto& axis : places.axes)
       here.back().push_back(scale * mesh::dot(obstacle.normal, jump(obstacle.face, axis)));
-    here.back().push_back(obstacle.least - mesh::dot(obstacle.normal, jump(obstacle.face, places.nearest)));
+    here.back().push_back(obstacle.minimum - mesh::dot(obstacle.normal, jump(obstacle.face, places.nearest)));
   }
   std::vector<Real> h;
   for (auto& row : gather_rows(*mesh_->comm, here, n + 1)) {
-    const Real least = row.back();
+    const Real minimum = row.back();
     row.pop_back();
     if (std::inner_product(row.begin(), row.end(), row.begin(), Real(0)) <= negligible * negligible * unit * unit)
       continue;
     G.push_back(row);
-    h.push_back(least);
+    h.push_back(minimum);
   }
   const auto x = least_distance(std::move(G), std::move(h), n);
   if (!x) return {};

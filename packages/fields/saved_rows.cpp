@@ -1,4 +1,4 @@
-#include "fields/kept_rows.hpp"
+#include "fields/saved_rows.hpp"
 
 namespace sprekk::fields {
 
@@ -7,7 +7,7 @@ namespace {
 using Policy = Kokkos::RangePolicy<Execution>;
 
 /// True if no marks have been added.
-bool same(const KeptRows::Marks& before, const KeptRows::Marks& now) {
+bool same(const SavedRows::Marks& before, const SavedRows::Marks& now) {
   if (before.bits.extent(0) != now.bits.extent(0)) return false;
   std::size_t n_other = 0;
   Kokkos::parallel_reduce(
@@ -18,23 +18,23 @@ bool same(const KeptRows::Marks& before, const KeptRows::Marks& now) {
 
 }  // namespace
 
-KeptRows::KeptRows(RCP<const Matrix> J) : J_(J) {
-  kept_.marks.number = View<LocalIndex*>("number of a row", J->numbers().n_rows());
-  Kokkos::deep_copy(kept_.marks.number, -1);
-  kept_.marks.first_word = View<std::size_t*>("words", 1);
+SavedRows::SavedRows(RCP<const Matrix> J) : J_(J) {
+  saved_.marks.number = View<LocalIndex*>("number of a row", J->numbers().n_rows());
+  Kokkos::deep_copy(saved_.marks.number, -1);
+  saved_.marks.first_word = View<std::size_t*>("words", 1);
 }
 
-KeptRows::Marks KeptRows::marks(const View<char*>& rows) const {
-  const auto before = kept_.marks;
+SavedRows::Marks SavedRows::marks(const View<char*>& rows) const {
+  const auto before = saved_.marks;
   const auto J = J_->numbers();
   const Policy all(0, rows.extent(0));
-  LocalIndex n_kept = 0;
+  LocalIndex n_saved = 0;
   Kokkos::parallel_reduce(
       "count rows", all,
-      KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum) { sum += before.number(row) >= 0 || rows(row) != 0; }, n_kept);
+      KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum) { sum += before.number(row) >= 0 || rows(row) != 0; }, n_saved);
   Marks now{View<LocalIndex*>("number of a row", rows.extent(0)),
-            View<LocalIndex*>("kept rows", n_kept),
-            View<std::size_t*>("words", n_kept + 1),
+            View<LocalIndex*>("saved rows", n_saved),
+            View<std::size_t*>("words", n_saved + 1),
             {}};
   Kokkos::parallel_scan(
       "number rows", all, KOKKOS_LAMBDA(LocalIndex row, LocalIndex & sum, bool last) {
@@ -45,7 +45,7 @@ KeptRows::Marks KeptRows::marks(const View<char*>& rows) const {
       });
   std::size_t n_words = 0;
   Kokkos::parallel_scan(
-      "count words", Policy(0, n_kept),
+      "count words", Policy(0, n_saved),
       KOKKOS_LAMBDA(LocalIndex k, std::size_t & sum, bool last) {
         sum += (J.length(now.row(k)) + Marks::word - 1) / Marks::word;
         if (last) now.first_word(k + 1) = sum;
@@ -60,8 +60,8 @@ KeptRows::Marks KeptRows::marks(const View<char*>& rows) const {
   return now;
 }
 
-void KeptRows::keep(const Marks& marks) {
-  const auto before = kept_;
+void SavedRows::keep(const Marks& marks) {
+  const auto before = saved_;
   const auto J = J_->numbers();
   const Policy rows(0, marks.row.extent(0));
   if (same(before.marks, marks)) return;
@@ -81,10 +81,10 @@ void KeptRows::keep(const Marks& marks) {
       }
     }
   };
-  Kept now{marks,
-           View<std::uint64_t*>("present", marks.bits.extent(0)),
-           View<std::size_t*>("first values", marks.row.extent(0) + 1),
-           {}};
+  Saved now{marks,
+            View<std::uint64_t*>("present", marks.bits.extent(0)),
+            View<std::size_t*>("first values", marks.row.extent(0) + 1),
+            {}};
   std::size_t n_values = 0;
   Kokkos::parallel_scan(
       "count values", rows,
@@ -93,7 +93,7 @@ void KeptRows::keep(const Marks& marks) {
         if (last) now.first_value(k + 1) = sum;
       },
       n_values);
-  now.value = View<Real*>("kept values", n_values);
+  now.value = View<Real*>("saved values", n_values);
   Kokkos::parallel_for(
       "keep values", rows, KOKKOS_LAMBDA(LocalIndex k) {
         std::size_t to = now.first_value(k);
@@ -103,23 +103,23 @@ void KeptRows::keep(const Marks& marks) {
           now.value(to++) = a;
         });
       });
-  kept_ = now;
+  saved_ = now;
 }
 
-void KeptRows::restore(const Matrix& matrix) const {
+void SavedRows::restore(const Matrix& matrix) const {
   const auto to = matrix.numbers();
-  const auto kept = kept_;
+  const auto saved = saved_;
   Kokkos::parallel_for(
-      "restore", Policy(0, kept.marks.row.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
-        const std::size_t begin = to.row(kept.marks.row(k)).begin;
-        kept.for_values(k, [&](std::size_t place, Real a) { to.value(begin + place) = a; });
+      "restore", Policy(0, saved.marks.row.extent(0)), KOKKOS_LAMBDA(LocalIndex k) {
+        const std::size_t begin = to.row(saved.marks.row(k)).begin;
+        saved.for_values(k, [&](std::size_t place, Real a) { to.value(begin + place) = a; });
       });
 }
 
 /// The order of summation is that of unmarked rows, so the results are bitwise identical.
-void KeptRows::add_local_product(const Vector& x, Vector& y) const {
+void SavedRows::add_local_product(const Vector& x, Vector& y) const {
   const auto J = J_->numbers();
-  const auto kept = kept_;
+  const auto saved = saved_;
   const auto from = x.getLocalViewDevice(Tpetra::Access::ReadOnly);
   const auto to = y.getLocalViewDevice(Tpetra::Access::ReadWrite);
   with_width(J.width, [&](auto width) {
@@ -127,7 +127,7 @@ void KeptRows::add_local_product(const Vector& x, Vector& y) const {
     const Real* const first = Kokkos::subview(from, Kokkos::ALL(), 0).data();
     Kokkos::parallel_for(
         "product", Policy(0, J.n_rows()), KOKKOS_LAMBDA(LocalIndex i) {
-          const LocalIndex k = kept.marks.number(i);
+          const LocalIndex k = saved.marks.number(i);
           if (k < 0) {
             to(i, 0) += J.product<w>(i, first);
             return;
@@ -140,7 +140,7 @@ void KeptRows::add_local_product(const Vector& x, Vector& y) const {
             if (a != 0) sums[place % n_sums] += a * from(J.column(row.first_node + place / w) * w + place % w, 0);
             ++place;
           };
-          kept.for_values(k, [&](std::size_t marked, Real a) {
+          saved.for_values(k, [&](std::size_t marked, Real a) {
             while (place < marked) add(J.value(row.begin + place));
             add(a);
           });
@@ -150,7 +150,7 @@ void KeptRows::add_local_product(const Vector& x, Vector& y) const {
   });
 }
 
-void KeptRows::add_product(const Vector& x, Vector& y) const {
+void SavedRows::add_product(const Vector& x, Vector& y) const {
   if (J_->import().is_null()) return add_local_product(x, y);
   Vector all(J_->column_map());
   J_->spread(x, all);

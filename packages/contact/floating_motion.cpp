@@ -1,5 +1,5 @@
 // Motions of floating pieces: share of a displacement, work, descriptions.
-#include "contact/loose_pieces.hpp"
+#include "contact/floating_pieces.hpp"
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -22,13 +22,13 @@ Real size(const RigidRow& q) { return std::sqrt(std::inner_product(q.begin(), q.
 }  // namespace
 
 /// Fits the free motions to the displacement by least squares over nodes, group by group.
-LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) const {
+FloatingPieces::Motion FloatingPieces::part_of(const fields::Vector& displacement) const {
   const auto modes = rigid_modes(dim());
-  const int m = static_cast<int>(modes.size()), n = static_cast<int>(loose_.size());
+  const int m = static_cast<int>(modes.size()), n = static_cast<int>(floating_.size());
   std::vector<Real> q(n * m, 0);
   const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t k = 0; k < piece_of_.size(); ++k) {
-    const int number = loose_number_[piece_of_[k]];
+    const int number = floating_number_[piece_of_[k]];
     if (number < 0) continue;
     for (int i = 0; i < dim(); ++i) {
       const auto row = rigid_row(frames_[piece_of_[k]], node(static_cast<LocalIndex>(k)), i);
@@ -44,7 +44,7 @@ LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) con
     for (int s = 0; s < n_modes; ++s) {
       std::vector<Real> moved(n_q, 0);  // inertia times the motion
       for (int k = 0; k < n_q; ++k) {
-        const auto& inertia = inertia_[loose_[group.first + k / m]];
+        const auto& inertia = inertia_[floating_[group.first + k / m]];
         for (int d = 0; d < m; ++d) moved[k] += inertia[modes[k % m]][modes[d]] * group.modes[s][k / m * m + d];
         share[s] += group.modes[s][k] * q[group.first * m + k];
       }
@@ -63,7 +63,7 @@ LoosePieces::Motion LoosePieces::part_of(const fields::Vector& displacement) con
   return motion;
 }
 
-void LoosePieces::remove_rigid(fields::Vector& ghosted) const {
+void FloatingPieces::remove_rigid(fields::Vector& ghosted) const {
   const auto modes = rigid_modes(dim());
   const int m = static_cast<int>(modes.size()), n_pieces = static_cast<int>(frames_.size());
   const auto u = ghosted.getLocalViewHost(Tpetra::Access::ReadWrite);
@@ -92,7 +92,7 @@ void LoosePieces::remove_rigid(fields::Vector& ghosted) const {
   }
 }
 
-void LoosePieces::set_rigid(int mode, fields::Vector& ghosted) const {
+void FloatingPieces::set_rigid(int mode, fields::Vector& ghosted) const {
   const auto u = ghosted.getLocalViewHost(Tpetra::Access::OverwriteAll);
   for (std::size_t k = 0; k < piece_of_ghosts_.size(); ++k)
     for (int i = 0; i < dim(); ++i) {
@@ -101,28 +101,28 @@ void LoosePieces::set_rigid(int mode, fields::Vector& ghosted) const {
     }
 }
 
-int LoosePieces::group_of(int number) const {
+int FloatingPieces::group_of(int number) const {
   const auto after = std::upper_bound(groups_.begin(), groups_.end(), number,
                                       [](int value, const Group& group) { return value < group.first; });
   return static_cast<int>(after - groups_.begin()) - 1;
 }
 
-void LoosePieces::add(const std::vector<Real>& s, const Motion& motion, fields::Vector& displacement) const {
+void FloatingPieces::add(const std::vector<Real>& s, const Motion& motion, fields::Vector& displacement) const {
   const auto u = displacement.getLocalViewHost(Tpetra::Access::ReadWrite);
   for (std::size_t k = 0; k < piece_of_.size(); ++k) {
-    const int piece = piece_of_[k], number = loose_number_[piece];
+    const int piece = piece_of_[k], number = floating_number_[piece];
     if (number < 0) continue;
     const Vector v = rigid_displacement(frames_[piece], motion.q[number], node(static_cast<LocalIndex>(k)));
     for (int i = 0; i < dim(); ++i) u(k * dim() + i, 0) += s[group_of(number)] * v[i];
   }
 }
 
-std::vector<Real> LoosePieces::work(const Motion& motion, const fields::Vector& residual,
-                                    const std::vector<Grip>& grips) const {
+std::vector<Real> FloatingPieces::work(const Motion& motion, const fields::Vector& residual,
+                                       const std::vector<Constraint>& constraints) const {
   const auto r = residual.getLocalViewHost(Tpetra::Access::ReadOnly);
   std::vector<Real> work(groups_.size(), 0);
   const auto add = [&](int piece, const Vector& x, const Vector& force) {
-    const int number = loose_number_[piece];
+    const int number = floating_number_[piece];
     if (number < 0) return;
     work[group_of(number)] += mesh::dot(rigid_displacement(frames_[piece], motion.q[number], x), force);
   };
@@ -136,7 +136,7 @@ std::vector<Real> LoosePieces::work(const Motion& motion, const fields::Vector& 
     const auto& face = mesh_->fracture_faces[f];
     Vector force{}, opposite{};
     for (int i = 0; i < 3; ++i) {
-      force[i] = -face.area * grips[f].excess[i];
+      force[i] = -face.area * constraints[f].excess[i];
       opposite[i] = -force[i];
     }
     add(mesh_->cell_piece[face.cell[mesh::plus]], face.centre, force);
@@ -145,10 +145,10 @@ std::vector<Real> LoosePieces::work(const Motion& motion, const fields::Vector& 
   return base::sum_over_ranks(*mesh_->comm, work);
 }
 
-LoosePieces::Motion LoosePieces::selected(const Motion& motion, const std::function<bool(int)>& group_is) const {
+FloatingPieces::Motion FloatingPieces::selected(const Motion& motion, const std::function<bool(int)>& group_is) const {
   Motion part = motion;
   bool any = false;
-  for (std::size_t k = 0; k < loose_.size(); ++k) {
+  for (std::size_t k = 0; k < floating_.size(); ++k) {
     const bool is = group_is(group_of(static_cast<int>(k)));
     if (!is) part.q[k] = {};
     any = any || is;
@@ -156,16 +156,16 @@ LoosePieces::Motion LoosePieces::selected(const Motion& motion, const std::funct
   return any ? part : Motion{};
 }
 
-int LoosePieces::most_modes() const {
-  std::size_t most = 0;
-  for (const auto& group : groups_) most = std::max(most, group.modes.size());
-  return static_cast<int>(most);
+int FloatingPieces::max_modes() const {
+  std::size_t maximum = 0;
+  for (const auto& group : groups_) maximum = std::max(maximum, group.modes.size());
+  return static_cast<int>(maximum);
 }
 
-LoosePieces::Motion LoosePieces::mode(int k) const {
+FloatingPieces::Motion FloatingPieces::mode(int k) const {
   const auto modes = rigid_modes(dim());
   Motion motion;
-  motion.q.assign(loose_.size(), {});
+  motion.q.assign(floating_.size(), {});
   for (const auto& group : groups_) {
     motion.largest.push_back(0);
     if (k >= static_cast<int>(group.modes.size())) continue;
@@ -179,10 +179,10 @@ LoosePieces::Motion LoosePieces::mode(int k) const {
   return motion;
 }
 
-LoosePieces::Motion LoosePieces::first() const {
+FloatingPieces::Motion FloatingPieces::first() const {
   const auto modes = rigid_modes(dim());
   Motion motion;
-  motion.q.assign(loose_.size(), {});
+  motion.q.assign(floating_.size(), {});
   motion.largest.assign(groups_.size(), 0);
   const auto& mode = groups_.front().modes.back();  // reduce() orders rotations first
   for (std::size_t c = 0; c < mode.size(); ++c)
@@ -190,14 +190,14 @@ LoosePieces::Motion LoosePieces::first() const {
   return motion;
 }
 
-std::string LoosePieces::describe(const Motion& motion) const {
+std::string FloatingPieces::describe(const Motion& motion) const {
   const auto largest = std::max_element(motion.q.begin(), motion.q.end(),
                                         [](const RigidRow& a, const RigidRow& b) { return size(a) < size(b); });
-  const int piece = loose_[largest - motion.q.begin()];
+  const int piece = floating_[largest - motion.q.begin()];
   const auto& frame = frames_[piece];
   return fmt::format("a piece of rock around {} ({} cells){} {}",
                      to_text(frame.centre, dim(), mesh::norm(frame.centre) + frame.size), n_cells_[piece],
-                     loose_.size() > 1 ? fmt::format(" and {} more", loose_.size() - 1) : "",
+                     floating_.size() > 1 ? fmt::format(" and {} more", floating_.size() - 1) : "",
                      to_text(free_motion(piece, frame, *largest), dim()));
 }
 

@@ -11,7 +11,7 @@ namespace sprekk::fields {
 /// Constant matrix A stored in another matrix J. Values of A that may change in J are saved here. The local columns of
 /// J begin with those of A. In other columns, rows without saved values have no entries, and unmarked values of J are
 /// zero. All members are local unless stated otherwise.
-class KeptRows {
+class SavedRows {
  public:
   /// Marks of values: bit p % 64 of word p / 64 of a row belongs to place p of the row.
   struct Marks {
@@ -29,7 +29,7 @@ class KeptRows {
   };
 
   /// Creates the storage. J must contain the values of A; none is saved yet.
-  explicit KeptRows(RCP<const Matrix> J);
+  explicit SavedRows(RCP<const Matrix> J);
 
   /// Returns marks with space for these rows ([owned row], not 0) and the marks of all saved values.
   Marks marks(const View<char*>& rows) const;
@@ -38,7 +38,7 @@ class KeptRows {
   void keep(const Marks& marks);
 
   /// Rows with marks. [number]
-  const View<LocalIndex*>& rows() const { return kept_.marks.row; }
+  const View<LocalIndex*>& rows() const { return saved_.marks.row; }
   const RCP<const Matrix>& J() const { return J_; }
 
   /// Copies the saved values to J or to a matrix with its graph.
@@ -51,7 +51,7 @@ class KeptRows {
   void add_product(const Vector& x, Vector& y) const;
 
  private:
-  struct Kept {
+  struct Saved {
     Marks marks;
     View<std::uint64_t*> present;    // as marks.bits: the value is not zero
     View<std::size_t*> first_value;  // [number + 1]
@@ -70,7 +70,7 @@ class KeptRows {
   };
 
   RCP<const Matrix> J_;
-  Kept kept_;
+  Saved saved_;
 };
 
 }  // namespace sprekk::fields

@@ -17,10 +17,10 @@ using mesh::operator*;
 
 namespace {
 
-constexpr Real least_load = 1e-10;  ///< smallest traction of a loaded face, relative to the traction scale
-constexpr Real margin = 1e-10;      ///< gap of faces without load, relative to the displacement scale
-constexpr Real at_limit = 1e-8;     ///< tolerance of the friction limit, relative
-constexpr Real settled = 1e-10;     ///< smallest motion, relative to the displacement scale
+constexpr Real min_load = 1e-10;           ///< smallest traction of a loaded face, relative to the traction scale
+constexpr Real margin = 1e-10;             ///< gap of faces without load, relative to the displacement scale
+constexpr Real at_limit = 1e-8;            ///< tolerance of the friction limit, relative
+constexpr Real negligible_motion = 1e-10;  ///< smallest motion, relative to the displacement scale
 
 /// Returns the rows of a b^T.
 std::array<Vector, 3> product(const Vector& a, const Vector& b) { return {a[0] * b, a[1] * b, a[2] * b}; }
@@ -29,23 +29,24 @@ std::array<Vector, 3> identity() { return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; }
 
 /// Sets the constraints of equilibrium states with unchanged tractions. A loaded face keeps its gap and sticks. At the
 /// friction limit it may slide, along its shear traction if there is one. Appends these faces to `slides`.
-void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::vector<LoosePieces::Slide>& slides) {
-  for (std::size_t f = 0; f < grips.size(); ++f) {
-    auto& grip = grips[f];
-    grip.held = {};
-    if (!(mesh::norm(grip.traction) > least)) continue;
+void release(const mesh::Mesh& mesh, Real minimum, std::vector<Constraint>& constraints,
+             std::vector<FloatingPieces::Slide>& slides) {
+  for (std::size_t f = 0; f < constraints.size(); ++f) {
+    auto& constraint = constraints[f];
+    constraint.held = {};
+    if (!(mesh::norm(constraint.traction) > minimum)) continue;
     const auto& frame = mesh.fracture_faces[f].frame;
-    const Vector shear = grip.traction - mesh::dot(grip.traction, frame[0]) * frame[0];
+    const Vector shear = constraint.traction - mesh::dot(constraint.traction, frame[0]) * frame[0];
     const Real size = mesh::norm(shear);
-    if (size < (1 - at_limit) * grip.limit - least) {
-      grip.held = identity();
+    if (size < (1 - at_limit) * constraint.limit - minimum) {
+      constraint.held = identity();
       continue;
     }
-    grip.held = product(frame[0], grip.away);
+    constraint.held = product(frame[0], constraint.away);
     const auto add = [&](const Vector& along, bool one_way) {
-      slides.push_back({static_cast<LocalIndex>(f), along, mesh::dot(along, grip.slip), one_way});
+      slides.push_back({static_cast<LocalIndex>(f), along, mesh::dot(along, constraint.slip), one_way});
     };
-    if (!(size > least)) {
+    if (!(size > minimum)) {
       for (int k = 1; k < mesh.dim(); ++k) add(frame[k], false);
       continue;
     }
@@ -53,7 +54,7 @@ void release(const mesh::Mesh& mesh, Real least, std::vector<Grip>& grips, std::
     add(along, true);
     const Vector across = mesh::cross(frame[0], along);
     const auto held = product(across, across);
-    for (int i = 0; i < 3 && mesh.dim() == 3; ++i) grip.held[i] = grip.held[i] + held[i];
+    for (int i = 0; i < 3 && mesh.dim() == 3; ++i) constraint.held[i] = constraint.held[i] + held[i];
   }
 }
 
@@ -75,28 +76,29 @@ Evaluation Contact::after(const Evaluation& x, const std::vector<RigidRow>& moti
   return distance(x.x()[blocks_.motion], u) > 0 ? Evaluation(there) : x;
 }
 
-/// Returns the nearest admissible state. Each pass adds two kinds of obstacles: faces with a gap below `least` [face],
-/// linearised at the last motion, and faces that would slide against their traction. Empty: not found. `unobstructed`:
-/// result of the first pass; empty before the first call. Collective.
-Evaluation Contact::way_back(const Evaluation& x, const std::vector<LoosePieces::Slide>& slides,
-                             const std::vector<Real>& least, Evaluation& unobstructed) {
-  constexpr int most_passes = 30;
+/// Returns the nearest admissible state. Each pass adds two kinds of obstacles: faces with a gap below `minimum`
+/// [face], linearised at the last motion, and faces that would slide against their traction. Empty: not found.
+/// `unobstructed`: result of the first pass; empty before the first call. Collective.
+Evaluation Contact::way_back(const Evaluation& x, const std::vector<FloatingPieces::Slide>& slides,
+                             const std::vector<Real>& minimum, Evaluation& unobstructed) {
+  constexpr int max_passes = 30;
   const Real length = equations_.sizes().motion, slack = 0.1 * margin * length;
   auto away = fields::Vector(*x.x()[blocks_.motion], Teuchos::Copy);
   away.update(-1, *committed_, 1);
   const auto places = pieces_->places(away, slides);
-  std::vector<LoosePieces::Obstacle> obstacles;
-  for (int pass = 0; pass < most_passes; ++pass) {
+  std::vector<FloatingPieces::Obstacle> obstacles;
+  for (int pass = 0; pass < max_passes; ++pass) {
     const auto motion = pieces_->nearest(places, obstacles, length);
     if (!motion) return {};
     const auto there = pass == 0 && !unobstructed.empty() ? unobstructed : after(x, *motion);
     if (pass == 0) unobstructed = there;
-    const auto grips = equations_.grips(there);
+    const auto constraints = equations_.contact_constraints(there);
     const auto n_before = obstacles.size();
-    for (LocalIndex f = 0; f < static_cast<LocalIndex>(grips.size()); ++f) {
-      const auto& grip = grips[f];
-      if (pieces_->is_beside(f) && grip.gap < least[f] - slack)
-        obstacles.push_back({f, grip.away, least[f] - grip.gap + mesh::dot(grip.away, pieces_->jump(f, *motion))});
+    for (LocalIndex f = 0; f < static_cast<LocalIndex>(constraints.size()); ++f) {
+      const auto& constraint = constraints[f];
+      if (pieces_->is_beside(f) && constraint.gap < minimum[f] - slack)
+        obstacles.push_back(
+            {f, constraint.away, minimum[f] - constraint.gap + mesh::dot(constraint.away, pieces_->jump(f, *motion))});
     }
     for (const auto& slide : slides) {
       const Real back = -std::max(slide.done, Real(0));
@@ -109,20 +111,20 @@ Evaluation Contact::way_back(const Evaluation& x, const std::vector<LoosePieces:
   return {};
 }
 
-bool Contact::settle(Evaluation& x) {
+bool Contact::place_at_minimum_norm(Evaluation& x) {
   if (!pieces_) return false;
   nearest_known_ = true;
   const auto sizes = equations_.sizes();
-  const Real length = sizes.motion, least = least_load * sizes.multiplier;
-  auto released = equations_.grips(x);
+  const Real length = sizes.motion, minimum = min_load * sizes.multiplier;
+  auto released = equations_.contact_constraints(x);
   std::vector<Real> apart, touching;
-  for (const auto& grip : released) {
-    const bool is_free = !(mesh::norm(grip.traction) > least);
+  for (const auto& constraint : released) {
+    const bool is_free = !(mesh::norm(constraint.traction) > minimum);
     apart.push_back(is_free ? margin * length : -std::numeric_limits<Real>::infinity());
-    touching.push_back(std::min({apart.back(), grip.gap, Real(0)}));
+    touching.push_back(std::min({apart.back(), constraint.gap, Real(0)}));
   }
-  std::vector<LoosePieces::Slide> slides;
-  release(*mesh_, least, released, slides);
+  std::vector<FloatingPieces::Slide> slides;
+  release(*mesh_, minimum, released, slides);
   pieces_->find(released);
   if (!pieces_->any()) return false;
   Evaluation unobstructed;
@@ -131,7 +133,7 @@ bool Contact::settle(Evaluation& x) {
   nearest_known_ = !found.empty();
   if (found.empty()) return false;
   const auto before = std::exchange(x, found);
-  return distance(before.x()[blocks_.motion], x.x()[blocks_.motion]) > settled * length;
+  return distance(before.x()[blocks_.motion], x.x()[blocks_.motion]) > negligible_motion * length;
 }
 
 }  // namespace sprekk::contact

@@ -10,7 +10,7 @@ using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 /// The slope is steeper than the angle of friction.
-TEST(Loose, SlidesDown) {
+TEST(Floating, SlidesDown) {
   for (const int dim : {2, 3}) {
     auto scene =
         read_scene(fmt::format("contact/incline_{}d.xml", dim), {fmt::format("Mesh.rotation={}", dim == 2 ? 45 : -45)});
@@ -27,7 +27,7 @@ TEST(Loose, SlidesDown) {
 }
 
 /// The body force lifts the block.
-TEST(Loose, LiftedWithoutEnd) {
+TEST(Floating, LiftedWithoutEnd) {
   for (const int dim : {2, 3}) {
     auto scene =
         read_scene(fmt::format("contact/incline_{}d.xml", dim),
@@ -42,7 +42,7 @@ TEST(Loose, LiftedWithoutEnd) {
 }
 
 /// A block under compression and shear is then lifted at its upper side, without tangential force.
-TEST(Loose, LiftedRestsWhereItIs) {
+TEST(Floating, LiftedRestsWhereItIs) {
   for (const int dim : {2, 3}) {
     auto scene =
         read_scene(fmt::format("verification/stack_{}d.xml", dim),
@@ -53,11 +53,11 @@ TEST(Loose, LiftedRestsWhereItIs) {
     model::Model model(scene, Tpetra::getDefaultComm());
     auto report = model.step_to(1);
     ASSERT_TRUE(report.converged) << report.reason;
-    EXPECT_EQ(report.loose, "");
+    EXPECT_EQ(report.floating, "");
     report = model.step_to(2);
     ASSERT_TRUE(report.converged) << report.reason;
-    EXPECT_THAT(report.loose, HasSubstr("a piece of rock around ("));
-    EXPECT_THAT(report.loose, HasSubstr("can move along ("));
+    EXPECT_THAT(report.floating, HasSubstr("a piece of rock around ("));
+    EXPECT_THAT(report.floating, HasSubstr("can move along ("));
     const Outputs out(model);
     for (LocalIndex f = 0; f < model.mesh().n_owned_fracture_faces; ++f) {
       const auto jump = out.vector("jump", f), traction = out.vector("traction", f);

@@ -12,7 +12,7 @@ namespace sprekk::contact {
 inline constexpr const char* state_names[] = {"open", "stick", "slip"};
 
 /// Contact constraint of a fracture face at a state.
-struct Grip {
+struct Constraint {
   std::array<mesh::Vector, 3> held{};  ///< rows: constrained directions of the jump, global frame; zero: open
   mesh::Vector excess{};               ///< traction unknown minus the traction of the law, Pa, global frame
   mesh::Vector traction{}, jump{};     ///< Pa, m, global frame
@@ -31,11 +31,11 @@ struct Support {
   int component;
 };
 
-/// Modifications of the face laws for the convergence of Newton's method. Solutions depend on the tether only.
+/// Modifications of the face laws for the convergence of Newton's method. Solutions depend on the proximal term only.
 struct Regularisation {
   ConstView<Real*> damping = {};       ///< [owned fracture face], see Globalisation::damp(); empty: zero
   ConstView<Real*> augmentation = {};  ///< [owned fracture face] factor, see Globalisation::calibrate(); empty: 1
-  Real tether = 0;                     ///< see Globalisation::tether()
+  Real proximal = 0;                   ///< see Globalisation::set_proximal_term()
   ConstView<Real**> anchor = {};       ///< [owned fracture face, 2 dim] jump at rest, traction there; global frame
 };
 

@@ -81,7 +81,7 @@ struct Counts {
 /// Runs all steps of a scene on all ranks and on rank 0 alone, and compares after each step. Solutions are accurate to
 /// round-off, because Newton's tolerance would cause differences. Returns the numbers of faces in each state over all
 /// steps.
-Counts expect_same_answer(model::Scene scene) {
+Counts expect_same_solution(model::Scene scene) {
   scene.solver.tolerance = 1e-13;
   const auto comm = Tpetra::getDefaultComm();
   model::Model together(scene, comm);
@@ -107,62 +107,62 @@ Counts expect_same_answer(model::Scene scene) {
   return counts;
 }
 
-TEST(SameAnswer, CrossingFractures2D) {
+TEST(SameSolution, CrossingFractures2D) {
   for (const auto& cell : cells_of(2)) {
     SCOPED_TRACE(cell);
     const auto counts =
-        expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.cell=" + cell, "Mesh.rotation=30"}));
+        expect_same_solution(read_scene("verification/crossing_2d.xml", {"Mesh.cell=" + cell, "Mesh.rotation=30"}));
     EXPECT_GT(counts.open, 0);
     EXPECT_GT(counts.stick, 0);
     EXPECT_GT(counts.slip, 0);
   }
 }
 
-TEST(SameAnswer, CrossingFractures3D) {
+TEST(SameSolution, CrossingFractures3D) {
   for (const auto& cell : cells_of(3)) {
     SCOPED_TRACE(cell);
-    const auto counts = expect_same_answer(read_scene("verification/crossing_3d.xml", {"Mesh.cell=" + cell}));
+    const auto counts = expect_same_solution(read_scene("verification/crossing_3d.xml", {"Mesh.cell=" + cell}));
     EXPECT_GT(counts.open, 0);
     EXPECT_GT(counts.stick, 0);
     EXPECT_GT(counts.slip, 0);
   }
 }
 
-TEST(SameAnswer, RenumberedAndSwapped) {
+TEST(SameSolution, RenumberedAndSwapped) {
   auto scene = read_scene("verification/crossing_3d.xml", {"Mesh.renumbering seed=11"});
   scene.mesh.fractures.at("steep").swap_sides = true;
-  expect_same_answer(scene);
+  expect_same_solution(scene);
 }
 
 /// Initial stress, gravity, ties, and non-uniform joint and rock properties.
-TEST(SameAnswer, LoadsAndVaryingMaterials) {
-  expect_same_answer(read_scene("verification/lithostatic_3d.xml"));
-  expect_same_answer(read_scene("verification/periodic_2d.xml", {"Mesh.cells={6, 8}"}));
-  expect_same_answer(read_scene("gmsh/crossing.xml"));
-  expect_same_answer(read_scene("seed/immersed_2d.xml", {"Materials.joint.friction coefficient=0.1 + 0.05*x",
-                                                         "Materials.rock.shear modulus=1e6*(1 + y)"}));
+TEST(SameSolution, LoadsAndVaryingMaterials) {
+  expect_same_solution(read_scene("verification/lithostatic_3d.xml"));
+  expect_same_solution(read_scene("verification/periodic_2d.xml", {"Mesh.cells={6, 8}"}));
+  expect_same_solution(read_scene("gmsh/crossing.xml"));
+  expect_same_solution(read_scene("seed/immersed_2d.xml", {"Materials.joint.friction coefficient=0.1 + 0.05*x",
+                                                           "Materials.rock.shear modulus=1e6*(1 + y)"}));
 }
 
-TEST(SameAnswer, Refined) {
-  expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=2"}));
-  expect_same_answer(read_scene("gmsh/crossing.xml", {"Mesh file.refinements=1"}));
-  expect_same_answer(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=1", "Mesh.order=2"}));
+TEST(SameSolution, Refined) {
+  expect_same_solution(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=2"}));
+  expect_same_solution(read_scene("gmsh/crossing.xml", {"Mesh file.refinements=1"}));
+  expect_same_solution(read_scene("verification/crossing_2d.xml", {"Mesh.refinements=1", "Mesh.order=2"}));
 }
 
-TEST(SameAnswer, ScenesOfTheThesis) {
+TEST(SameSolution, ScenesOfTheThesis) {
   for (const char* name : {"push_2d", "push_3d", "pull_2d", "pull_3d", "immersed_2d"}) {
     SCOPED_TRACE(name);
-    expect_same_answer(read_scene(std::string("seed/") + name + ".xml"));
+    expect_same_solution(read_scene(std::string("seed/") + name + ".xml"));
   }
 }
 
-TEST(SameAnswer, IterativeSolver) {
-  expect_same_answer(
+TEST(SameSolution, IterativeSolver) {
+  expect_same_solution(
       read_scene("verification/crossing_3d.xml", {"Solver.Linear solver.type=iterative", "Time.schedule={1}"}));
 }
 
 /// Fracture in one corner: one rank owns all its faces.
-TEST(SameAnswer, RanksWithoutFractureFaces) {
+TEST(SameSolution, RanksWithoutFractureFaces) {
   const auto comm = Tpetra::getDefaultComm();
   if (comm->getSize() == 1) GTEST_SKIP() << "needs more than one rank";
   const auto scene =
@@ -171,23 +171,23 @@ TEST(SameAnswer, RanksWithoutFractureFaces) {
                   "Mesh.fractures.steep.lower corner={0.875, 0.75}", "Mesh.fractures.steep.upper corner={0.875, 1}"});
   const model::Model model(scene, comm);
   ASSERT_TRUE(anywhere(*comm, model.mesh().n_owned_fracture_faces == 0));
-  expect_same_answer(scene);
+  expect_same_solution(scene);
 }
 
-TEST(SameAnswer, RanksWithoutCells) {
+TEST(SameSolution, RanksWithoutCells) {
   const auto comm = Tpetra::getDefaultComm();
   if (comm->getSize() < 3) GTEST_SKIP() << "needs three ranks";
   const auto scene = read_scene("seed/push_2d.xml", {"Mesh.cell=quadrilateral", "Mesh.cells={1, 2}"});
   const model::Model model(scene, comm);
   ASSERT_TRUE(anywhere(*comm, model.mesh().n_owned_cells == 0));
   for (const char* d : {"{1, -1}", "{1, 1}"})
-    expect_same_answer(read_scene("seed/push_2d.xml",
-                                  {"Mesh.cells={1, 2}", std::string("Boundary conditions.moved.displacement=") + d}));
+    expect_same_solution(read_scene("seed/push_2d.xml",
+                                    {"Mesh.cells={1, 2}", std::string("Boundary conditions.moved.displacement=") + d}));
 }
 
-TEST(SameAnswer, RanksWithoutCellsAndNoFracture) {
-  expect_same_answer(read_scene("verification/uniaxial_2d.xml", {"Mesh.cell=quadrilateral", "Mesh.cells={1, 1}"}));
-  expect_same_answer(read_scene("verification/uniaxial_3d.xml", {"Mesh.cell=hexahedron", "Mesh.cells={1, 1, 1}"}));
+TEST(SameSolution, RanksWithoutCellsAndNoFracture) {
+  expect_same_solution(read_scene("verification/uniaxial_2d.xml", {"Mesh.cell=quadrilateral", "Mesh.cells={1, 1}"}));
+  expect_same_solution(read_scene("verification/uniaxial_3d.xml", {"Mesh.cell=hexahedron", "Mesh.cells={1, 1, 1}"}));
 }
 
 /// Two models advance alternately on the same communicator.

@@ -1,4 +1,4 @@
-#include "fields/kept_rows.hpp"
+#include "fields/saved_rows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,46 +56,46 @@ struct Full {
 
 bool changes(GlobalIndex i, GlobalIndex j, int every) { return i % every == 0 && (i + j) % (every + 1) != 2; }
 
-TEST(KeptRows, MultiplyAndGiveBackWhatWasThere) {
+TEST(SavedRows, MultiplyAndGiveBackWhatWasThere) {
   for (const int width : {1, 2, 3}) {
     const Full full(width);
     ASSERT_EQ(full.J->numbers().width, width);
-    KeptRows kept(full.J);
+    SavedRows saved(full.J);
     Vector x(full.map), before(full.map), y(full.map);
     for (std::size_t i = 0; i < x.getLocalLength(); ++i)
       x.replaceLocalValue(i, std::cos(static_cast<Real>(full.map->getGlobalElement(i))));
-    kept.add_product(x, before);
+    saved.add_product(x, before);
     std::size_t n_before = 0;
     for (const int every : {5, 3, 5}) {  // some rows are saved already and have other values in J; finally all
-      const auto marks = kept.marks(full.rows(every));
+      const auto marks = saved.marks(full.rows(every));
       full.for_numbers([&](GlobalIndex i, GlobalIndex j, std::size_t place, Real&) {
         if (changes(i, j, every)) marks.set(full.map->getLocalElement(i), place);
       });
-      kept.keep(marks);
-      EXPECT_GE(kept.rows().extent(0), n_before);
-      n_before = kept.rows().extent(0);
+      saved.keep(marks);
+      EXPECT_GE(saved.rows().extent(0), n_before);
+      n_before = saved.rows().extent(0);
       full.for_numbers([&](GlobalIndex i, GlobalIndex j, std::size_t, Real& value) {
         if (changes(i, j, every)) value = 1e3 + static_cast<Real>(i + j);
       });
       y.putScalar(0);
-      kept.add_product(x, y);
+      saved.add_product(x, y);
       for (std::size_t i = 0; i < y.getLocalLength(); ++i) EXPECT_EQ(y.getData()[i], before.getData()[i]) << i;
     }
-    kept.restore(*full.J);
+    saved.restore(*full.J);
     full.for_numbers([](GlobalIndex i, GlobalIndex j, std::size_t, Real& value) { ASSERT_EQ(value, number(i, j)); });
   }
 }
 
-TEST(KeptRows, MayBeNone) {
+TEST(SavedRows, MayBeNone) {
   const Full full(3);
-  KeptRows kept(full.J);
-  kept.keep(kept.marks(View<char*>("none", base::n_local_elements(*full.map))));
-  EXPECT_EQ(kept.rows().extent(0), 0u);
-  kept.restore(*full.J);
+  SavedRows saved(full.J);
+  saved.keep(saved.marks(View<char*>("none", base::n_local_elements(*full.map))));
+  EXPECT_EQ(saved.rows().extent(0), 0u);
+  saved.restore(*full.J);
   Vector x(full.map), y(full.map), expected(full.map);
   x.putScalar(1);
   full.J->crs()->apply(x, expected);
-  kept.add_product(x, y);
+  saved.add_product(x, y);
   y.update(-1, expected, 1);
   EXPECT_LE(y.normInf(), 1e-12);
 }

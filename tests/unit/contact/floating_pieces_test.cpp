@@ -1,5 +1,5 @@
 // Floating blocks for prescribed contact constraints: a column of three blocks along y, cut by "lower" and "upper".
-#include "contact/loose_pieces.hpp"
+#include "contact/floating_pieces.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,14 +15,14 @@
 namespace sprekk::test {
 namespace {
 
-Real largest(const contact::LoosePieces::Motion& motion) {
+Real largest(const contact::FloatingPieces::Motion& motion) {
   return motion.largest.empty() ? 0 : *std::max_element(motion.largest.begin(), motion.largest.end());
 }
 
 Real sum(const std::vector<Real>& values) { return std::accumulate(values.begin(), values.end(), Real(0)); }
 
-using contact::Grip;
-using contact::LoosePieces;
+using contact::Constraint;
+using contact::FloatingPieces;
 using contact::RigidFrame;
 using contact::RigidRow;
 using mesh::Vector;
@@ -54,7 +54,7 @@ struct Column {
   RCP<const mesh::Mesh> mesh;
   fields::Layout layout;
   assembly::Constraints constraints;
-  LoosePieces pieces;
+  FloatingPieces pieces;
   RCP<fields::Vector> diagonal;
 
   Column(const mesh::BoxMesh& box, const std::vector<std::string>& held)
@@ -74,8 +74,8 @@ struct Column {
     return all;
   }
 
-  std::vector<Grip> grips(const Contact& lower, const Contact& upper) const {
-    std::vector<Grip> all(mesh->n_owned_fracture_faces);
+  std::vector<Constraint> contact_constraints(const Contact& lower, const Contact& upper) const {
+    std::vector<Constraint> all(mesh->n_owned_fracture_faces);
     for (LocalIndex f = 0; f < mesh->n_owned_fracture_faces; ++f) {
       const auto& contact = mesh->fracture_names[mesh->fracture_faces[f].fracture] == "lower" ? lower : upper;
       for (int i = 0; contact.state != Contact::open && i < mesh->dim(); ++i)
@@ -84,7 +84,7 @@ struct Column {
     }
     return all;
   }
-  void find(const Contact& lower, const Contact& upper) { pieces.find(grips(lower, upper)); }
+  void find(const Contact& lower, const Contact& upper) { pieces.find(contact_constraints(lower, upper)); }
 
   Vector x(LocalIndex node) const {
     Vector result{};
@@ -141,7 +141,7 @@ struct Column {
   }
 };
 
-TEST(LoosePieces, NothingToWatchWhereAllIsHeldByConditions) {
+TEST(FloatingPieces, NothingToWatchWhereAllIsHeldByConditions) {
   for (const auto& cell : all_cells) {
     auto box = column_box(cell);
     EXPECT_TRUE(Column(box, {"south", "north"}).pieces.possible()) << cell;
@@ -153,7 +153,7 @@ TEST(LoosePieces, NothingToWatchWhereAllIsHeldByConditions) {
   }
 }
 
-TEST(LoosePieces, SticksTogether) {
+TEST(FloatingPieces, SticksTogether) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south"});
     column.find(open, open);
@@ -164,7 +164,7 @@ TEST(LoosePieces, SticksTogether) {
   }
 }
 
-TEST(LoosePieces, SlidesBetweenTwoThatAreHeld) {
+TEST(FloatingPieces, SlidesBetweenTwoThatAreHeld) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south", "north"});
     column.find(slip, slip);
@@ -191,7 +191,7 @@ TEST(LoosePieces, SlidesBetweenTwoThatAreHeld) {
   }
 }
 
-TEST(LoosePieces, FreeOfEverything) {
+TEST(FloatingPieces, FreeOfEverything) {
   for (const auto& cell : all_cells) {
     const int n = dim_of(cell) == 2 ? 3 : 6;
     Column held(column_box(cell), {"south", "north"}), standing(column_box(cell), {"south"});
@@ -208,7 +208,7 @@ TEST(LoosePieces, FreeOfEverything) {
 }
 
 /// Tied sides allow no rotation, also with one layer of cells that has only one layer of independent nodes.
-TEST(LoosePieces, PeriodicSides) {
+TEST(FloatingPieces, PeriodicSides) {
   for (const auto& cell : all_cells)
     for (int width : {2, 1}) {
       SCOPED_TRACE(cell);
@@ -239,7 +239,7 @@ TEST(LoosePieces, PeriodicSides) {
 }
 
 /// The blocks on both sides of a crack across a layer form one block: they are tied to each other at the other end.
-TEST(LoosePieces, TiedToEachOther) {
+TEST(FloatingPieces, TiedToEachOther) {
   for (const auto& cell : all_cells) {
     const int dim = dim_of(cell);
     auto box = column_box(cell);
@@ -278,7 +278,7 @@ TEST(LoosePieces, TiedToEachOther) {
   }
 }
 
-TEST(LoosePieces, SlideTogetherThoughEachSticksToTheOther) {
+TEST(FloatingPieces, SlideTogetherThoughEachSticksToTheOther) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south"});
     column.find(slip, stick);
@@ -292,7 +292,7 @@ TEST(LoosePieces, SlideTogetherThoughEachSticksToTheOther) {
 }
 
 /// A face transmits force at its centre.
-TEST(LoosePieces, TurnsAboutOneFace) {
+TEST(FloatingPieces, TurnsAboutOneFace) {
   for (const std::string cell : {"quadrilateral", "hexahedron"}) {
     Column column(column_box(cell, 1), {"south", "north"});
     column.find(open, stick);
@@ -312,7 +312,7 @@ TEST(LoosePieces, TurnsAboutOneFace) {
 }
 
 /// part_of() is a projection, and add() is its inverse.
-TEST(LoosePieces, PartsAddUp) {
+TEST(FloatingPieces, PartsAddUp) {
   for (const auto& cell : all_cells)
     for (const auto& contacts : {std::pair{open, open}, {slip, stick}, {stick, slip}}) {
       Column column(column_box(cell), {"south"});
@@ -331,12 +331,12 @@ TEST(LoosePieces, PartsAddUp) {
 }
 
 /// Each mode is a free motion, and their number is correct; the modes are independent.
-TEST(LoosePieces, ModesAreFreeMotions) {
+TEST(FloatingPieces, ModesAreFreeMotions) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south"});
     column.find(open, open);  // two groups of one block each
     const int n = dim_of(cell) == 2 ? 3 : 6;
-    ASSERT_EQ(column.pieces.most_modes(), n);
+    ASSERT_EQ(column.pieces.max_modes(), n);
     for (int k = 0; k < n; ++k) {
       const auto mode = column.pieces.mode(k);
       ASSERT_EQ(mode.largest.size(), 2u);
@@ -353,7 +353,7 @@ TEST(LoosePieces, ModesAreFreeMotions) {
   }
 }
 
-TEST(LoosePieces, ProximalOnThoseThatAreLoose) {
+TEST(FloatingPieces, ProximalOnFloatingPieces) {
   for (const auto& cell : all_cells)
     for (bool periodic : {false, true}) {
       auto box = column_box(cell);
@@ -377,7 +377,7 @@ TEST(LoosePieces, ProximalOnThoseThatAreLoose) {
 
 /// Minimum-norm displacement among those that differ by a free motion. It is zero for a motion of the floating block.
 /// If the block must keep a distance of 0.1 from a neighbour, it is a translation by 0.1.
-TEST(LoosePieces, ComesToLieNearest) {
+TEST(FloatingPieces, ComesToLieNearest) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south", "north"});
     column.find(open, open);
@@ -385,7 +385,7 @@ TEST(LoosePieces, ComesToLieNearest) {
     std::array<RigidRow, 3> moved{};
     for (int mode : contact::rigid_modes(column.mesh->dim())) moved[1][mode] = 0.3 + 0.1 * mode;
     for (const Real side : {0, 1, -1}) {  // the neighbour that is an obstacle
-      std::vector<LoosePieces::Obstacle> obstacles;
+      std::vector<FloatingPieces::Obstacle> obstacles;
       for (LocalIndex f = 0; f < column.mesh->n_owned_fracture_faces && side != 0; ++f) {
         const auto& face = column.mesh->fracture_faces[f];
         const bool upper = column.mesh->fracture_names[face.fracture] == "upper";
@@ -407,7 +407,7 @@ TEST(LoosePieces, ComesToLieNearest) {
 
 /// A block that slides on both neighbours moves until both slips are equal, from any position. The motion is limited
 /// so that no slip changes its sign.
-TEST(LoosePieces, SlidesToWhereSlipIsLeast) {
+TEST(FloatingPieces, SlidesToWhereSlipIsLeast) {
   for (const auto& cell : all_cells)
     for (const Real place : {0.0, 0.7}) {
       Column column(column_box(cell), {"south", "north"});
@@ -415,8 +415,8 @@ TEST(LoosePieces, SlidesToWhereSlipIsLeast) {
       ASSERT_EQ(column.pieces.n_groups(), 1);
       std::array<RigidRow, 3> moved{};
       moved[1][0] = place;
-      std::vector<LoosePieces::Slide> slides;
-      std::vector<LoosePieces::Obstacle> obstacles;
+      std::vector<FloatingPieces::Slide> slides;
+      std::vector<FloatingPieces::Obstacle> obstacles;
       for (LocalIndex f = 0; f < column.mesh->n_owned_fracture_faces; ++f) {
         const auto& face = column.mesh->fracture_faces[f];
         const bool upper = column.mesh->fracture_names[face.fracture] == "upper";
@@ -437,7 +437,7 @@ TEST(LoosePieces, SlidesToWhereSlipIsLeast) {
 }
 
 /// Next to the softest block, the proximal term is as small as inside. Removal of rigid motions leaves zero.
-TEST(LoosePieces, BlocksOfOtherStiffness) {
+TEST(FloatingPieces, BlocksOfOtherStiffness) {
   for (const auto& cell : all_cells) {
     Column column(column_box(cell), {"south"});
     const auto blocks = column.block_of_node();
@@ -461,7 +461,7 @@ TEST(LoosePieces, BlocksOfOtherStiffness) {
 
 /// Forces of tractions lambda on the sides of all faces, in equal parts at the nodes: -lambda on plus, lambda on
 /// minus. The residual is their opposite. The excess part of lambda does no work.
-TEST(LoosePieces, WorkIsThatOfTheLaw) {
+TEST(FloatingPieces, WorkIsThatOfTheLaw) {
   const auto law = [](const Vector& x) { return Vector{1 + 0.3 * x[1], 0.2 * x[0] - 0.5, 0.4 + 0.1 * x[2]}; };
   const auto excess = [](const Vector& x) { return Vector{-7 + x[1], 5 * x[0], 2 * x[2] - x[0]}; };
   for (const auto& cell : all_cells)
@@ -469,10 +469,10 @@ TEST(LoosePieces, WorkIsThatOfTheLaw) {
       Column column(column_box(cell), {"south"});
       const auto& mesh = *column.mesh;
       const int dim = mesh.dim(), n = mesh::n_face_nodes(mesh.shape);
-      auto grips = column.grips(open, upper);
+      auto contact_constraints = column.contact_constraints(open, upper);
       for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-        for (int i = 0; i < dim; ++i) grips[f].excess[i] = excess(mesh.fracture_faces[f].centre)[i];
-      column.pieces.find(grips);
+        for (int i = 0; i < dim; ++i) contact_constraints[f].excess[i] = excess(mesh.fracture_faces[f].centre)[i];
+      column.pieces.find(contact_constraints);
       fields::Vector r(column.layout.owned()), u(column.layout.owned());
       for (const auto& face : mesh.fracture_faces)
         for (int side : {mesh::minus, mesh::plus})
@@ -501,7 +501,8 @@ TEST(LoosePieces, WorkIsThatOfTheLaw) {
           }
         }
         Teuchos::reduceAll(*mesh.comm, Teuchos::REDUCE_SUM, 1, &here, &expected);
-        EXPECT_NEAR(sum(column.pieces.work(motion, r, grips)), expected, 1e-9) << cell << " mode " << mode;
+        EXPECT_NEAR(sum(column.pieces.work(motion, r, contact_constraints)), expected, 1e-9)
+            << cell << " mode " << mode;
       }
     }
 }

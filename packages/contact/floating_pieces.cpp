@@ -1,4 +1,4 @@
-#include "contact/loose_pieces.hpp"
+#include "contact/floating_pieces.hpp"
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
@@ -41,27 +41,27 @@ bool is_regular(const RigidBlock& block, const std::vector<int>& modes) {
 
 }  // namespace
 
-LoosePieces::LoosePieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement,
-                         const std::vector<Support>& supports, const std::vector<Real>& volumes)
+FloatingPieces::FloatingPieces(RCP<const mesh::Mesh> mesh, const fields::Layout& displacement,
+                               const std::vector<Support>& supports, const std::vector<Real>& volumes)
     : mesh_(mesh) {
   if (mesh_->n_global_fracture_faces == 0) return;
   measure_pieces(displacement, volumes);
   find_ties(displacement);
-  hold(supports);
+  constrain(supports);
   for (int p = 0; p < mesh_->n_pieces; ++p)
     if (!is_regular(support_[p], rigid_modes(dim()))) candidates_.push_back(p);
-  loose_number_.assign(mesh_->n_pieces, -1);
+  floating_number_.assign(mesh_->n_pieces, -1);
   pair_up();
 }
 
-Vector LoosePieces::node(LocalIndex n) const {
+Vector FloatingPieces::node(LocalIndex n) const {
   Vector x{};
   for (int i = 0; i < dim(); ++i) x[i] = mesh_->coordinates[n * dim() + i];
   return x;
 }
 
 /// Computes the frame, size and cell count of pieces, and the piece and volume of nodes. Collective.
-void LoosePieces::measure_pieces(const fields::Layout& displacement, const std::vector<Real>& volumes) {
+void FloatingPieces::measure_pieces(const fields::Layout& displacement, const std::vector<Real>& volumes) {
   const int n = mesh_->nodes_per_cell(), n_pieces = mesh_->n_pieces;
   std::vector<Real> corner(6 * n_pieces, -std::numeric_limits<Real>::max());
   piece_of_.assign(displacement.n_owned_entities(), 0);
@@ -101,7 +101,7 @@ void LoosePieces::measure_pieces(const fields::Layout& displacement, const std::
   inertia_ = base::sum_over_ranks(*mesh_->comm, inertia_);
 }
 
-void LoosePieces::find_ties(const fields::Layout& displacement) {
+void FloatingPieces::find_ties(const fields::Layout& displacement) {
   fields::Vector owned(displacement.owned()), ghosted(displacement.ghosted());  // piece numbers of nodes
   for (LocalIndex i = 0; i < displacement.n_owned(); ++i) owned.replaceLocalValue(i, piece_of_[i / dim()]);
   ghosted.doImport(owned, *displacement.import(), Tpetra::REPLACE);
@@ -119,7 +119,7 @@ void LoosePieces::find_ties(const fields::Layout& displacement) {
   tied_ = base::max_over_ranks(*mesh_->comm, tied);
 }
 
-void LoosePieces::hold(const std::vector<Support>& supports) {
+void FloatingPieces::constrain(const std::vector<Support>& supports) {
   support_.assign(mesh_->n_pieces, {});
   for (const auto& [unknown, component] : supports) {
     const int piece = piece_of_[unknown / dim()];
@@ -137,7 +137,7 @@ void LoosePieces::hold(const std::vector<Support>& supports) {
 }
 
 /// Finds the pairs of pieces at faces and ties of all ranks, in the same order on all ranks. Collective.
-void LoosePieces::pair_up() {
+void FloatingPieces::pair_up() {
   std::set<std::pair<int, int>> here;
   std::vector<std::pair<int, int>> of_face;
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
@@ -167,7 +167,7 @@ void LoosePieces::pair_up() {
 
 /// Scales the term to the softest piece, since soft pieces may support a stiff one. The diagonal measures the
 /// stiffness.
-void LoosePieces::set_stiffness(const fields::Vector& diagonal) {
+void FloatingPieces::set_stiffness(const fields::Vector& diagonal) {
   stiffness_ = rcp(new fields::Vector(diagonal, Teuchos::Copy));
   proximal_ = rcp(new fields::Vector(diagonal.getMap()));
   const auto view = stiffness_->getLocalViewHost(Tpetra::Access::ReadWrite);
@@ -189,7 +189,7 @@ void LoosePieces::set_stiffness(const fields::Vector& diagonal) {
     for (int i = 0; i < dim(); ++i) view(k * dim() + i, 0) *= *softest / modulus[piece_of_[k]];
 }
 
-void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
+void FloatingPieces::sum_pairs(const std::vector<Constraint>& constraints) {
   pairs_sum_.assign(3 * pairs_.size(), {});
   const auto add = [&](int pair, const RigidRow& a, const RigidRow& b) {
     add_product(pairs_sum_[3 * pair], a, a);
@@ -208,8 +208,8 @@ void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
       for (int j = 0; j < dim(); ++j) {
         const auto at_a = rigid_row(frames_[a], x, j), at_b = rigid_row(frames_[b], x, j);
         for (int k = 0; k < 6; ++k) {
-          row_a[k] += grips[f].held[i][j] * at_a[k];
-          row_b[k] += grips[f].held[i][j] * at_b[k];
+          row_a[k] += constraints[f].held[i][j] * at_a[k];
+          row_b[k] += constraints[f].held[i][j] * at_b[k];
         }
       }
       add(pair_of_[f], row_a, row_b);
@@ -220,7 +220,7 @@ void LoosePieces::sum_pairs(const std::vector<Grip>& grips) {
 
 /// Returns the candidates without support by supported pieces. A piece is supported once its supports and its supported
 /// neighbours leave no free motion.
-std::vector<int> LoosePieces::unheld() const {
+std::vector<int> FloatingPieces::unconstrained() const {
   const auto modes = rigid_modes(dim());
   std::vector<char> held(mesh_->n_pieces, 1);
   for (int p : candidates_) held[p] = 0;
@@ -246,24 +246,24 @@ std::vector<int> LoosePieces::unheld() const {
   return result;
 }
 
-void LoosePieces::find(const std::vector<Grip>& grips) {
-  sum_pairs(grips);
-  loose_.clear();
+void FloatingPieces::find(const std::vector<Constraint>& constraints) {
+  sum_pairs(constraints);
+  floating_.clear();
   groups_.clear();
-  std::fill(loose_number_.begin(), loose_number_.end(), -1);
-  for (const auto& pieces : coupled(unheld())) find_motions(pieces);
-  for (std::size_t k = 0; k < loose_.size(); ++k) loose_number_[loose_[k]] = static_cast<int>(k);
+  std::fill(floating_number_.begin(), floating_number_.end(), -1);
+  for (const auto& pieces : coupled(unconstrained())) find_motions(pieces);
+  for (std::size_t k = 0; k < floating_.size(); ++k) floating_number_[floating_[k]] = static_cast<int>(k);
   proximal_->putScalar(0);
   if (!any()) return;
   const auto to = proximal_->getLocalViewHost(Tpetra::Access::ReadWrite);
   const auto from = stiffness_->getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t k = 0; k < piece_of_.size(); ++k)
-    if (loose_number_[piece_of_[k]] >= 0)
+    if (floating_number_[piece_of_[k]] >= 0)
       for (int i = 0; i < dim(); ++i) to(k * dim() + i, 0) = from(k * dim() + i, 0);
 }
 
 /// Returns the sets of pieces that constrain each other in some direction.
-std::vector<std::vector<int>> LoosePieces::coupled(const std::vector<int>& pieces) const {
+std::vector<std::vector<int>> FloatingPieces::coupled(const std::vector<int>& pieces) const {
   mesh::UnionFind sets(mesh_->n_pieces);
   std::vector<char> is_left(mesh_->n_pieces, 0);
   for (int p : pieces) is_left[p] = 1;
@@ -278,7 +278,7 @@ std::vector<std::vector<int>> LoosePieces::coupled(const std::vector<int>& piece
 }
 
 /// Returns the matrix of supports and pair sums for the motions of these pieces, [piece * m + mode] in both dimensions.
-std::vector<Real> LoosePieces::resistance(const std::vector<int>& pieces) const {
+std::vector<Real> FloatingPieces::resistance(const std::vector<int>& pieces) const {
   const auto modes = rigid_modes(dim());
   const int m = static_cast<int>(modes.size()), n = m * static_cast<int>(pieces.size());
   std::map<int, int> number;
@@ -302,20 +302,20 @@ std::vector<Real> LoosePieces::resistance(const std::vector<int>& pieces) const 
 }
 
 /// Finds the free motions of these pieces, and adds the moving pieces as a new group.
-void LoosePieces::find_motions(const std::vector<int>& pieces) {
+void FloatingPieces::find_motions(const std::vector<int>& pieces) {
   const auto modes = rigid_modes(dim());
   const std::size_t m = modes.size();
   auto motions = null_space(resistance(pieces), static_cast<int>(m * pieces.size()));
   if (motions.empty()) return;
   reduce(motions, [&](std::size_t c) { return modes[c % m] >= 3; });
-  Group group{static_cast<int>(loose_.size()), {}};
+  Group group{static_cast<int>(floating_.size()), {}};
   group.modes.resize(motions.size());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto moves = [&](const std::vector<Real>& motion) {
       return std::any_of(&motion[k * m], &motion[k * m] + m, [](Real q) { return std::abs(q) > negligible; });
     };
     if (std::none_of(motions.begin(), motions.end(), moves)) continue;
-    loose_.push_back(pieces[k]);
+    floating_.push_back(pieces[k]);
     for (std::size_t s = 0; s < motions.size(); ++s)
       group.modes[s].insert(group.modes[s].end(), &motions[s][k * m], &motions[s][k * m] + m);
   }

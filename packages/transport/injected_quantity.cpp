@@ -1,4 +1,4 @@
-#include "transport/brought.hpp"
+#include "transport/injected_quantity.hpp"
 
 #include "transport/add_entry.hpp"
 
@@ -7,13 +7,13 @@ namespace sprekk::transport {
 /// | symbol        | shape        | unit       |                                          |
 /// | row, face     | [connection] | -          | of p and u; fracture face, -1 for rock   |
 /// | held          | [connection] | -          | the pressure of the well is prescribed, else the rate |
-/// | brings        | [connection] | -          | v is known                               |
+/// | prescribes        | [connection] | -          | v is known                               |
 /// | index         | [connection] | m^3/(Pa s) | W; with conduits divided by the transmissivity |
 /// | driver        | [connection] | Pa or m^3/s | p_w or q                                |
 /// | value         | [connection] | U          | v                                        |
-struct Brought::Kernel {
+struct InjectedQuantity::Kernel {
   ConstView<LocalIndex*> row, face;
-  ConstView<char*> held, brings;
+  ConstView<char*> held, prescribes;
   ConstView<Real*> index, driver, value, p, u, widening;
   PresentConduits conduits;
   laws::Fluid fluid;
@@ -27,19 +27,20 @@ struct Brought::Kernel {
   KOKKOS_INLINE_FUNCTION Real conductance(int k) const { return unchanged(k) * change.value(row(k)); }
   KOKKOS_INLINE_FUNCTION Real drop(int k) const { return fluid.drop(driver(k), p(row(k)), 0); }
   KOKKOS_INLINE_FUNCTION Real flow(int k) const { return held(k) ? conductance(k) * drop(k) : driver(k); }
-  KOKKOS_INLINE_FUNCTION bool counts(int k) const { return brings(k) && flow(k) > 0; }
+  KOKKOS_INLINE_FUNCTION bool counts(int k) const { return prescribes(k) && flow(k) > 0; }
   KOKKOS_INLINE_FUNCTION Real rise(int k) const { return capacity * (u(row(k)) - value(k)); }
 };
 
-void Brought::add(LocalIndex row, Real index, bool by_pressure, LocalIndex face) {
+void InjectedQuantity::add(LocalIndex row, Real index, bool by_pressure, LocalIndex face) {
   rows_.push_back(row);
   indices_.push_back(index);
   by_pressure_.push_back(by_pressure);
   faces_.push_back(face);
 }
 
-void Brought::bind(const assembly::Context& context, int pressure, int carried, const laws::Fluid& fluid, Real capacity,
-                   const std::vector<laws::Conduit>& conduits, const std::optional<FluidChange>& change) {
+void InjectedQuantity::bind(const assembly::Context& context, int pressure, int carried, const laws::Fluid& fluid,
+                            Real capacity, const std::vector<laws::Conduit>& conduits,
+                            const std::optional<FluidChange>& change) {
   pressure_ = pressure;
   if (change) {
     changing_ = context.field(change->field);
@@ -48,42 +49,42 @@ void Brought::bind(const assembly::Context& context, int pressure, int carried, 
   carried_ = carried;
   fluid_ = fluid;
   capacity_ = capacity;
-  for (const auto row : rows_) kept_.push_back(row < context.layout(carried).n_owned());
-  const auto kept = [&](auto values) {
+  for (const auto row : rows_) owned_.push_back(row < context.layout(carried).n_owned());
+  const auto of_owned = [&](auto values) {
     std::size_t n = 0;
-    for (std::size_t k = 0; k < kept_.size(); ++k)
-      if (kept_[k]) values[n++] = values[k];
+    for (std::size_t k = 0; k < owned_.size(); ++k)
+      if (owned_[k]) values[n++] = values[k];
     values.resize(n);
     return assembly::to_device(values, "connections");
   };
-  row_ = kept(rows_);
-  face_ = kept(faces_);
-  index_ = kept(indices_);
-  held_ = kept(by_pressure_);
+  row_ = of_owned(rows_);
+  face_ = of_owned(faces_);
+  index_ = of_owned(indices_);
+  held_ = of_owned(by_pressure_);
   conduit_ = assembly::to_device(conduits, "conduits");
   if (!conduits.empty()) widening_ = context.field("widening");
   set(std::vector<Control>(rows_.size()));
 }
 
-void Brought::set(const std::vector<Control>& controls) {
+void InjectedQuantity::set(const std::vector<Control>& controls) {
   std::vector<Real> drivers, values;
-  std::vector<char> brings;
-  for (std::size_t k = 0; k < kept_.size(); ++k) {
-    if (!kept_[k]) continue;
+  std::vector<char> prescribes;
+  for (std::size_t k = 0; k < owned_.size(); ++k) {
+    if (!owned_[k]) continue;
     drivers.push_back(controls[k].driver);
     values.push_back(controls[k].value);
-    brings.push_back(controls[k].brings);
+    prescribes.push_back(controls[k].prescribes);
   }
   driver_ = assembly::to_device(drivers, "pressures or rates");
   value_ = assembly::to_device(values, "values");
-  brings_ = assembly::to_device(brings, "brings");
+  prescribes_ = assembly::to_device(prescribes, "prescribes");
 }
 
-Brought::Kernel Brought::kernel(const assembly::State& state) const {
+InjectedQuantity::Kernel InjectedQuantity::kernel(const assembly::State& state) const {
   return {row_,
           face_,
           held_,
-          brings_,
+          prescribes_,
           index_,
           driver_,
           value_,
@@ -96,23 +97,23 @@ Brought::Kernel Brought::kernel(const assembly::State& state) const {
           {changing_ >= 0, response_, changing_ < 0 ? ConstView<Real*>() : ConstView<Real*>(state.x[changing_])}};
 }
 
-void Brought::add_residual(const assembly::State& state, const assembly::Rows& r) const {
+void InjectedQuantity::add_residual(const assembly::State& state, const assembly::Rows& r) const {
   const auto kernel = this->kernel(state);
   const auto rows = r[carried_];
   Kokkos::parallel_for(
-      "brought", Kokkos::RangePolicy<Execution>(0, row_.extent(0)), KOKKOS_LAMBDA(int k) {
+      "injected quantity", Kokkos::RangePolicy<Execution>(0, row_.extent(0)), KOKKOS_LAMBDA(int k) {
         if (kernel.counts(k)) Kokkos::atomic_add(&rows(kernel.row(k)), kernel.flow(k) * kernel.rise(k));
       });
 }
 
 /// Assumes that columns of owned unknowns have the numbers of their rows.
-void Brought::add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
+void InjectedQuantity::add_jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
   const auto kernel = this->kernel(state);
   const Kokkos::RangePolicy<Execution> all(0, row_.extent(0));
   const auto own = J(carried_, carried_)->getLocalMatrixDevice();
   const auto by_pressure = J(carried_, pressure_)->getLocalMatrixDevice();
   Kokkos::parallel_for(
-      "brought", all, KOKKOS_LAMBDA(int k) {
+      "injected quantity", all, KOKKOS_LAMBDA(int k) {
         if (!kernel.counts(k)) return;
         const LocalIndex row = kernel.row(k);
         add_entry(own, row, row, kernel.capacity * kernel.flow(k));
@@ -123,7 +124,7 @@ void Brought::add_jacobian(const assembly::State& state, fields::BlockMatrix& J)
   if (changing_ >= 0) {
     const auto by_changing = J(carried_, changing_)->getLocalMatrixDevice();
     Kokkos::parallel_for(
-        "brought", all, KOKKOS_LAMBDA(int k) {
+        "injected quantity", all, KOKKOS_LAMBDA(int k) {
           if (!kernel.counts(k) || !kernel.held(k)) return;
           const LocalIndex row = kernel.row(k);
           add_entry(by_changing, row, row,
@@ -133,7 +134,7 @@ void Brought::add_jacobian(const assembly::State& state, fields::BlockMatrix& J)
   if (widening_ < 0 || J(carried_, widening_).is_null()) return;
   const auto by_widening = J(carried_, widening_)->getLocalMatrixDevice();
   Kokkos::parallel_for(
-      "brought", all, KOKKOS_LAMBDA(int k) {
+      "injected quantity", all, KOKKOS_LAMBDA(int k) {
         if (!kernel.counts(k) || !kernel.held(k)) return;
         const LocalIndex face = kernel.face(k);
         add_entry(by_widening, kernel.row(k), face,
