@@ -1,8 +1,8 @@
 // Interface for embedding: host applications need only this header.
 #pragma once
 
-#include "assembly/kernel_module.hpp"
 #include "assembly/divergence.hpp"
+#include "assembly/kernel_module.hpp"
 #include "assembly/system.hpp"
 #include "base/log.hpp"
 #include "base/timer.hpp"
