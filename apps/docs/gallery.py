@@ -54,6 +54,7 @@ PICTURES = {
     "slopes": "bulk",
     "stages": "bulk",
     "thm": "temperature",
+    "tracer": "flow",
     "tutorial": "maps",
 }
 

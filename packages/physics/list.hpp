@@ -5,6 +5,7 @@
 #include "physics/heat/heat.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/poroelasticity/poroelasticity.hpp"
+#include "physics/tracer/tracer.hpp"
 
 namespace sprekk::physics {
 
@@ -12,6 +13,7 @@ template <template <class...> class Of>
 using OfAll = Of<Mechanics,       //
                  Flow,            //
                  Poroelasticity,  //
-                 Heat>;
+                 Heat,            //
+                 Tracer>;
 
 }  // namespace sprekk::physics

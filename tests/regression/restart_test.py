@@ -21,6 +21,7 @@ TURNS = "contact/damage_turns_3d.xml"  # directional histories, more than fit in
 INJECTION = "poro/injection_2d.xml"  # fractures slide, widen and open
 SHUT_IN = "poro/shut_in_2d.xml"  # adaptive steps
 DOUBLET = "thm/doublet_2d.xml"  # adaptive steps with heat
+TRACER = "tracer/doublet_2d.xml"
 HISTORY = ["Materials.joint.damage=isotropic", "Materials.joint.damage length of friction=0.02",  # of two laws
            "Materials.joint.residual part of friction=0.5", "Materials.joint.closure=Barton-Bandis with memory",
            "Materials.joint.irrecoverable part of closure=0.3"]
@@ -94,6 +95,7 @@ class Restart(ProgramTest):
                 (DOUBLET, 2, ("2e6, 4e6", "6e6"),
                  ["Mesh.cells={20, 20}", "Heat.fluid=exponential", "Heat.viscosity decay=0.015",
                   "Heat.heat of friction=true", "Heat.advection=second order"]),
+                (TRACER, 2, ("2e4, 4e4", "6e4"), ["Mesh.cells={20, 12}", "Time.scheme=BDF2"]),
                 (CROSSING, 1, ("2", "3"), multigrid), (CROSSING, 2, ("2", "3"), multigrid),
                 (CROSSING, 3, ("2", "3"), multigrid)):
             with self.subTest(scene=scene, ranks=ranks, options=options):

@@ -4,7 +4,7 @@
     check_rules.py ROOT     prints "file:line: [rule] message" for every violation; exit status 1 if there is any
 
 Rules: include-order, solver-header, host-only, kernel, unfinished, self-contained, static-state, generic-room,
-heat-room, trilinos-names, compiler, functor, lambda, host-read, host-pointer."""
+physics-room, trilinos-names, compiler, functor, lambda, host-read, host-pointer."""
 import re
 import sys
 from pathlib import Path
@@ -40,9 +40,10 @@ GENERIC = {"base", "mesh", "fields", "assembly", "estimate", "multigrid", "solve
 PHYSICS = re.compile(
     r"\b(?:pressures?|fluids?|tractions?|friction|temperatures?|heat|dilation|apertures?|biot|permeability|porosity"
     r"|viscosity|displacements?|jumps?|slips?|stress(?:es)?)\b", re.IGNORECASE)
-# Words of heat, allowed only in its package and in the list of physics.
-HEAT = re.compile(r"heat|temperature", re.IGNORECASE)
-HEAT_ROOM = re.compile(r"packages/physics/(?:heat/|list\.hpp)")
+# Words of a physics, allowed only in its folder of packages/physics and in the list of physics: such a physics is one
+# folder and one line.
+OF_PHYSICS = {"heat": re.compile(r"heat|temperature", re.IGNORECASE), "tracer": re.compile(r"tracer", re.IGNORECASE)}
+LIST = "packages/physics/list.hpp"
 
 NOT_IN_KERNELS = re.compile(
     r"\bstd::(?:vector|map|unordered_map|set|string|cout|cerr|function)\b|\bnew\b|\b(?:malloc|printf)\s*\("
@@ -225,8 +226,10 @@ def check_cpp(path, text, aliases):
     if package in GENERIC:
         for match in PHYSICS.finditer(text):
             yield match.start(), "generic-room", f"{match.group()} in packages/{package}"
-    for match in HEAT.finditer(text if not HEAT_ROOM.match(name) else ""):
-        yield match.start(), "heat-room", f"{match.group()} outside packages/physics/heat"
+    for physics, words in OF_PHYSICS.items():
+        room = f"packages/physics/{physics}/"
+        for match in words.finditer("" if name == LIST or name.startswith(room) else text):
+            yield match.start(), "physics-room", f"{match.group()} outside {room}"
     allowed = {package, *USES.get(package, "").split()}
     for match in re.finditer(r'^\s*#\s*include\s*"(\w+)/', text, re.MULTILINE):
         if match[1] not in allowed:

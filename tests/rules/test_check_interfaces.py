@@ -25,7 +25,7 @@ BAD = {
         ("packages/physics/physics.hpp", "struct RatesFunctions {\n" + 7 * "bool (*f)(int);\n" + "};"),
     "data members of System": ("packages/assembly/system.hpp", f"class System {{\n{11 * MEMBERS}}};"),
     "data members of a class of packages": ("packages/mesh/a.hpp", f"class A : B<int> {{\n{13 * MEMBERS}}};"),
-    "lines of packages/physics": ("packages/physics/heat/", 30 * [400 * "\n"]),
+    "lines of packages/physics / number of physics": ("packages/physics/heat/", 30 * [400 * "\n"]),
     "sources of packages/physics outside of folders": ("packages/physics/", 7 * [""]),
     "their includes of folders, except in list.hpp": ("packages/physics/a.hpp", LIST),
     "generic sources that name a physics": ("packages/io/a.cpp", "Real friction;"),

@@ -47,7 +47,9 @@ BAD = [  # file, text, rule
     ("packages/solve/a.hpp", "// of a fluid", "generic-room"),
     ("packages/assembly/system.cpp", "// block of the displacements", "generic-room"),
     ("packages/estimate/a.hpp", "void slip();", "generic-room"),
-    ("packages/physics/flow/a.cpp", "int f(Real temperature);", "heat-room"),
+    ("packages/physics/flow/a.cpp", "int f(Real temperature);", "physics-room"),
+    ("packages/transport/wells.cpp", "// of a tracer", "physics-room"),
+    ("packages/physics/heat/a.cpp", "struct Tracer;", "physics-room"),
     *[("packages/laws/a.hpp", KERNEL % line, "kernel") for line in [
         "if (x < 0) throw 1;", "SPREKK_CHECK(x > 0, \"\");", "Kokkos::deep_copy(y, x);", "fmt::print(\"\");"]],
     ("packages/assembly/a.cpp", "int f(unsigned x) { return __builtin_popcount(x); }", "compiler"),
@@ -87,6 +89,8 @@ class A {
 };
 """,
     "packages/physics/heat/a.cpp": "int f(Real temperature);\n",
+    "packages/physics/tracer/a.cpp": "struct Tracer;\n",
+    "packages/physics/list.hpp": "// Heat, Tracer\n",
     "packages/physics/a.cpp": '#include "physics/a.hpp"\n#include "laws/joint.hpp"\n#include <vector>\n',
     "packages/solve/a.cpp": "#include <NOX_Solver_Generic.H>\n#include <MueLu.hpp>\n",
     "packages/assembly/a.hpp": """

@@ -65,9 +65,9 @@ TEST(Groups, AreVisitedInPhysicsThatHaveThem) {
   for_each_physics([&](auto) { ++all; });
   for_each_physics([&]<HasSolvability P>(P) { ++with_solvability; });
   for_each_physics([&]<HasRates P>(P) { sections.push_back(P::Rates::sections().at(0)); });
-  EXPECT_EQ(all, 4);
+  EXPECT_EQ(all, 5);
   EXPECT_EQ(with_solvability, 1);
-  EXPECT_EQ(sections, (std::vector<std::string>{"Flow", "Heat"}));
+  EXPECT_EQ(sections, (std::vector<std::string>{"Flow", "Heat", "Tracer"}));
 }
 
 }  // namespace
