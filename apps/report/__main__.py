@@ -26,6 +26,12 @@ def arguments(words):
     return parser.parse_args(words)
 
 
+def progress(words):
+    """Shows the present work on a terminal."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{words}", end="", file=sys.stderr, flush=True)
+
+
 def pictures(directory, dpi):
     """Returns (name, PNG) of each picture of `sprekk plot`, (file name, text) of each table, and its messages."""
     with tempfile.TemporaryDirectory() as folder:
@@ -45,6 +51,7 @@ def pictures(directory, dpi):
 
 def report(options):
     import checks
+    import events
     import figures
     import page
     import read
@@ -60,6 +67,7 @@ def report(options):
     content = read.results(directory)
     dim = content.get("mesh", {}).get("dimension", 3)
     entries = scene.Scene(directory, ROOT / "docs/use/reference.md", dim)
+    progress("pictures")
     drawn, tables, left_out = pictures(directory, options.dpi)
     start = float(entries.entries.get("Time", {}).get("start", 0))
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
@@ -72,9 +80,10 @@ def report(options):
         tables,
         drawn,
         left_out,
-        view.of_run(directory) if viewer else None,
+        view.of_run(directory, content, entries.entries, events.of_run(content, start), progress) if viewer else None,
         viewer,
     )
+    progress("")
     file.write_text(html, encoding="utf-8")
     return file
 

@@ -11,7 +11,7 @@ MAX_ROWS = 30
 NOISE = 1e-9  # round-off relative to the largest value of a column
 
 OF_FRACTURES = [
-    ("area", "length or area", "m"),
+    ("area", "area", "m²"),
     ("first_slip", "first slip at", "s"),
     ("fraction_slip", "slipping at the end", ""),
     ("fraction_open", "open at the end", ""),
@@ -23,6 +23,7 @@ OF_FRACTURES = [
     ("moment", "moment", "N m"),
     ("moment_magnitude", "moment magnitude", ""),
 ]
+OF_PLANE = {"area": ("length", "m"), "moment": ("moment per depth", "N")}  # titles and units in 2D
 
 
 def column(title, values, base):
@@ -59,10 +60,7 @@ def of_fractures(fractures, dim):
     columns = [("fracture", shown)]
     for key, title, base in OF_FRACTURES:
         if any(fractures[name].get(key) is not None for name in shown):
-            if key == "area":
-                base, title = ("m²", "area") if dim == 3 else ("m", "length")
-            if key == "moment" and dim == 2:
-                base, title = "N", "moment per depth"
+            title, base = OF_PLANE.get(key, (title, base)) if dim == 2 else (title, base)
             columns.append(column(title, [fractures[name].get(key) for name in shown], base))
     if not shown or len(columns) == 1:
         return
@@ -147,7 +145,7 @@ def of_events(found, dim):
     shown = sorted(found, key=lambda event: -event.moment)[:MAX_ROWS]
     if not shown:
         return
-    moment = ("moment per depth", "N") if dim == 2 else ("moment", "N m")
+    moment = OF_PLANE["moment"] if dim == 2 else ("moment", "N m")
     columns = [("fracture", [event.fracture for event in shown])] + [
         column(title, [getattr(event, key) for event in shown], base)
         for key, title, base in (

@@ -116,8 +116,8 @@ def view_part(view, viewer):
         return "<p class='note'>The run wrote no grids, so there is no 3D view.</p>", ""
     data = json.dumps(view).replace("</", "<\\/")
     place = (
-        f"<div id='view'></div><div id='view-controls'></div>"
-        f"<p class='note'>At t = {text(quantity(view['time'], 's'))}. Drag to turn, pinch or scroll to zoom, shift-drag to move.</p>"
+        "<div id='view'></div><div id='view-controls'></div><div id='view-facts' class='wide'></div>"
+        "<p class='note'>Drag to turn, pinch or scroll to zoom, shift-drag to move. Click on a fracture for its numbers.</p>"
     )
     return place, f"<script type='application/json' id='view-data'>{data}</script><script>{viewer}</script>"
 

@@ -1,4 +1,5 @@
 """Headless Chromium with one page, controlled through the pipe of its DevTools protocol."""
+
 import base64
 import json
 import os
@@ -143,6 +144,10 @@ class Browser:
                 buttons=int(kind != "mouseReleased"),
                 clickCount=1,
             )
+
+    def click(self, selector):
+        """Clicks on the centre of an element."""
+        self.drag(selector, 0, 0)
 
     def paper(self):
         """Returns a PDF of the printed page."""

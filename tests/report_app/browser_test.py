@@ -3,6 +3,7 @@
 
 Requires Chromium, npm, which downloads the library of the view once, and the modules for pictures. If one is missing,
 the status is 77, for ctest's "skipped"."""
+
 import io
 import shutil
 import subprocess
@@ -78,6 +79,37 @@ class BrowserTest(ProgramTest):
         )
         self.expect_quiet()
 
+    def expect_steps(self, n):
+        """Checks that the slider shows other steps, with their times."""
+        last, reported = self.browser.picture("#view canvas"), "document.getElementById('view-time').textContent"
+        self.assertEqual(self.browser.value("document.getElementById('view-step').max"), str(n - 1))
+        before = self.browser.value(reported)
+        self.browser.value(
+            "(s => { s.value = 0; s.dispatchEvent(new Event('input')); })(document.getElementById('view-step'))"
+        )
+        self.assertNotEqual(self.browser.value(reported), before)
+        self.assertGreater(
+            (self.image(last) != self.image(self.browser.picture("#view canvas"))).any(axis=2).mean(), 0.02
+        )
+        self.expect_quiet()
+
+    def expect_numbers(self, content):
+        """Checks that a click on a fracture lists its numbers, and a selection those of another one."""
+        names = [one["name"] for one in content["single_fractures"]]
+        self.browser.value("[...document.querySelectorAll('#view-controls button')].at(-1).click()")  # reset the view
+        self.browser.click("#view")
+        name = self.browser.value("document.getElementById('view-fracture').value")
+        self.assertIn(name, names)
+        facts = "document.getElementById('view-facts').innerText"
+        self.assertIn(name, self.browser.value(facts))
+        self.assertIn("slip tendency", self.browser.value(facts))
+        other = next(one for one in names if one != name)
+        self.browser.value(
+            f"(s => {{ s.value = {other!r}; s.dispatchEvent(new Event('change')); }})(document.getElementById('view-fracture'))"
+        )
+        self.assertIn(other, self.browser.value(facts))
+        self.expect_quiet()
+
     def expect_fits(self, file):
         """Checks that a phone needs no horizontal scrolling, and that a printout has several pages."""
         self.browser.open(file, 390, 844, mobile=True)
@@ -92,11 +124,15 @@ class BrowserTest(ProgramTest):
     def test_body(self):
         file = self.report("verification/crossing_3d.xml")
         self.expect_view(file)
+        self.expect_steps(len(self.results()["steps"]))
+        self.expect_numbers(self.results())
         self.expect_fits(file)
 
     def test_plane(self):
         file = self.report("poro/injection_2d.xml", "Time.steps=2", "Time.end=7200")
         self.expect_view(file)
+        self.expect_steps(2)
+        self.assertIn("injector", self.browser.value("document.querySelector('#view .well').textContent"))
         self.expect_fits(file)
 
 

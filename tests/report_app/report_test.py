@@ -27,10 +27,13 @@ report = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(report)
 
 import checks  # noqa: E402
+import events  # noqa: E402
 import figures  # noqa: E402
 import numbers_in_words  # noqa: E402
 import numpy as np  # noqa: E402
+import read  # noqa: E402
 import scene  # noqa: E402
+import shapes  # noqa: E402
 import view  # noqa: E402
 
 
@@ -224,42 +227,78 @@ class Checks(ReportTest):
 
 
 class Views(ReportTest):
-    def numbers(self, text, kind=np.float32):
-        return np.frombuffer(base64.b64decode(text), dtype=kind)
+    def view(self):
+        """Returns the data of the view, with a function that returns its arrays."""
+        content, entries = self.results(), read.scene(self.folder / "out")
+        shown = view.of_run(self.folder / "out", content, entries, events.of_run(content))
+        return shown, lambda k, kind: np.frombuffer(base64.b64decode(shown["arrays"][k]), dtype=kind)
+
+    def values(self, array, surface, name, step):
+        """Returns the values of a field at a step, in the unit of its name."""
+        k = next(k for k, one in enumerate(surface["fields"]) if one["name"].startswith(name))
+        low, high = surface["fields"][k]["range"]
+        return low + (high - low) * array(surface["frames"][step]["values"][k], np.uint16) / 65535
 
     def test_body(self):
-        """Values and positions of the view are those of the files."""
-        self.run_scene("verification/crossing_3d.xml")
-        shown = view.of_run(self.folder / "out")
+        """Values, positions and numbers of all steps are those of the files; equal arrays are stored once."""
+        content = self.run_scene("verification/crossing_3d.xml")
+        shown, array = self.view()
         rock, joints = shown["surfaces"]
         self.assertEqual([rock["name"], joints["name"]], ["rock", "fractures"])
         self.assertLess(rock["opacity"], joints["opacity"])
-        import read
-
-        grid = read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1])
-        slip = read.arrays(grid.GetCellData())["slip"]
-        field = next(f for f in joints["fields"] if f["name"].startswith("slip"))
-        factor = {"slip (m)": 1, "slip (mm)": 1e-3, "slip (µm)": 1e-6}[field["name"]]
-        self.assertAlmostEqual(float(np.max(self.numbers(field["values"]))) * factor / np.max(slip), 1, 6)
-        triangles = self.numbers(joints["triangles"], np.uint32)
-        self.assertEqual(len(self.numbers(field["values"])), len(triangles) // 3)
-        self.assertLess(triangles.max(), len(self.numbers(joints["points"])) // 3)
-        displacement = self.numbers(rock["displacement"]).reshape(-1, 3)
-        self.assertGreater(np.max(abs(displacement)), 0)
+        steps = read.written_steps(self.folder / "out", "fractures")
+        self.assertEqual(len(shown["times"]), len(steps))
+        for k, (_, file) in enumerate(steps):
+            data = read.arrays(read.grid(file).GetCellData())
+            shear = np.linalg.norm(data["jump local"][:, 1:], axis=1)
+            found = self.values(array, joints, "tangential jump", k)
+            self.assertEqual(len(found), len(shear))
+            self.assertTrue(
+                np.allclose(found / np.max(found), shear / np.max(shear), atol=1e-3) or np.max(shear) < 1e-9
+            )
+        frame = joints["frames"][-1]
+        triangles, points = array(frame["triangles"], np.uint32), array(frame["points"], np.float32)
+        self.assertEqual(len(array(frame["owner"], np.uint32)), len(triangles) // 3)
+        self.assertLess(triangles.max(), len(points) // 3)
+        self.assertEqual(set(array(frame["numbers"], np.uint16)), set(range(len(content["single_fractures"]))))
+        self.assertEqual(len({one["points"] for one in joints["frames"]}), 1)
+        self.assertEqual(len(set(shown["arrays"])), len(shown["arrays"]))
+        moved = array(rock["frames"][-1]["displacement"], np.int16) * rock["scale"]
+        grid = read.grid(read.written_steps(self.folder / "out", "bulk")[-1][1])
+        displacement = read.arrays(grid.GetPointData())["displacement"]
+        self.assertAlmostEqual(np.max(abs(moved)) / np.max(abs(displacement)), 1, 3)
+        self.assertEqual(
+            [one["name"] for one in shown["fractures"]], [one["name"] for one in content["single_fractures"]]
+        )
+        moments = next(one["values"] for one in shown["tables"] if one["name"].startswith("moment (N m)"))
+        wanted = content["steps"][-1]["single_fractures"]["moment"]
+        self.assertEqual(moments[-1], figures.column("", wanted, "")[1])
 
     def test_plane(self):
-        """In 2D traces are bands of the same length, in front of the rock."""
-        self.run_scene("verification/crossing_2d.xml")
-        rock, joints = view.of_run(self.folder / "out")["surfaces"]
+        """In 2D traces are bands of the same length, in front of the rock; wells have their places."""
+        self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=7200")
+        shown, array = self.view()
+        rock, joints = shown["surfaces"]
         self.assertEqual(rock["opacity"], 1)
-        points = self.numbers(joints["points"]).reshape(-1, 3)
-        self.assertGreater(points[:, 2].min(), self.numbers(rock["points"]).reshape(-1, 3)[:, 2].max())
-        import read
-
+        points = [array(one["frames"][-1]["points"], np.float32).reshape(-1, 3) for one in (rock, joints)]
+        self.assertGreater(points[1][:, 2].min(), points[0][:, 2].max())
         lines = read.segments(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]))
         lengths = [np.linalg.norm(np.diff(ends[:2], axis=0)) for ends in lines.corners()]
-        bands = points.reshape(-1, 4, 3)
+        bands = points[1].reshape(-1, 4, 3)
         self.assertTrue(np.allclose(np.linalg.norm(bands[:, 1] - bands[:, 0], axis=1), lengths, rtol=1e-5))
+        (well,) = shown["wells"]
+        self.assertEqual((well["name"], well["points"]), ("injector", [[-2.5, 0, 0]]))
+        self.assertEqual([label["text"] for label in shown["labels"]], ["x = 200 m", "y = 200 m", "(0, 0) m"])
+        self.assertEqual(shown["times"], ["t = 60 min", "t = 2 h"])
+
+    def test_steps_of_a_small_view(self):
+        """Of more steps than the view has room for, it contains the first and the last one."""
+        self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=12", "Output.every=1")
+        with mock.patch.object(view, "MAX_FRAMES", 2):
+            shown, array = self.view()
+        self.assertEqual(len(shown["times"]), 2)
+        self.assertEqual(shown["times"][-1], "t = 2 s")
+        self.assertTrue(all(len(surface["frames"]) == 2 for surface in shown["surfaces"]))
 
     def test_large_surfaces_are_thinned(self):
         """A wavy surface has fewer triangles at almost the same place, with the values of its points."""
@@ -268,14 +307,14 @@ class Views(ReportTest):
         points = np.column_stack([x.ravel(), y.ravel(), 0.1 * np.sin(6 * x.ravel())])
         k = np.arange(n * n).reshape(n, n)
         square = np.stack([k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]], -1).reshape(-1, 4)
-        triangles = np.concatenate([square[:, :3], square[:, [0, 2, 3]]])
-        values = points[triangles].mean(axis=1)[:, 0]
-        content = view.content("rock", points, triangles, [view.field("x", values, "", "viridis", "cells")], points)
-        saved = self.numbers(content["points"]).reshape(-1, 3)
-        self.assertLessEqual(len(self.numbers(content["triangles"], np.uint32)) // 3, 1.05 * view.MAX_TRIANGLES)
-        self.assertTrue(np.allclose(saved[:, 2], 0.1 * np.sin(6 * saved[:, 0]), atol=1e-5))
-        self.assertTrue(np.allclose(self.numbers(content["fields"][0]["values"]), saved[:, 0], atol=1 / n))
-        self.assertTrue(np.allclose(np.ptp(saved, axis=0), np.ptp(points, axis=0), atol=1e-3))
+        shape = shapes.of_surface(read.Surface(points, list(square), {}, {}))
+        self.assertLessEqual(len(shape.triangles), 1.05 * shapes.MAX_TRIANGLES)
+        self.assertTrue(np.allclose(shape.points[:, 2], 0.1 * np.sin(6 * shape.points[:, 0]), atol=1e-5))
+        self.assertTrue(
+            np.allclose(shape.of_polygons(points[square].mean(axis=1)[:, 0]), shape.points[:, 0], atol=1 / n)
+        )
+        self.assertTrue(np.allclose(shape.at_points(points), shape.points))
+        self.assertTrue(np.allclose(np.ptp(shape.points, axis=0), np.ptp(points, axis=0), atol=1e-3))
 
 
 class Words(ReportTest):
