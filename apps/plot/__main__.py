@@ -90,20 +90,21 @@ def of_run(directory, options):
             raise PlotError(f"{directory / 'fractures.pvd'}: has no step at t = {time:g} s, bulk.pvd has one; "
                             "run the scene again")
         cut = joints if joints and joints.GetNumberOfCells() else None
+        wells = read.wells(scene, 2 if read.is_plane(rock) else 3)
         deforms = rock.GetPointData().HasArray("displacement")
         if deforms and cut and read.is_plane(rock) and (figure := overview.of_step(rock, joints, scene, title)):
             yield "overview", figure
         for picture, kind in ("flow", flow.FLUID), ("temperature", flow.HEAT):
             if rock.GetCellData().HasArray(kind.drive):
                 initial = scene.get("Flow", {}).get("initial pressure") if kind is flow.FLUID else None
-                yield picture, flow.of_step(rock, cut, title, options.whole, kind, initial)
+                yield picture, flow.of_step(rock, cut, title, options.whole, kind, initial, wells)
         if deforms:
             yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
         if deforms and joints and joints.GetNumberOfCells() > 0:
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
             singles = content.get("single_fractures", [])
-            yield "fractures", fractures.of_step(rock, joints, names, title, singles, options.whole)
-            yield "maps", maps.of_step(rock, joints, names, title, singles, options.whole)
+            yield "fractures", fractures.of_step(rock, joints, names, title, singles, options.whole, wells)
+            yield "maps", maps.of_step(rock, joints, names, title, singles, options.whole, wells)
             yield "mohr", mohr.of_step(rock, joints, scene, title, content, time)
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)

@@ -98,7 +98,7 @@ def of_plane(rock, joints, title, kind, initial):
     return figure
 
 
-def of_body(rock, joints, bounds, title, whole, kind, initial):
+def of_body(rock, joints, bounds, title, whole, kind, initial, wells):
     content = list(panels(rock, joints, kind, initial))
     figure, axes = plt.subplots(1, len(content), figsize=(4 * len(content) + 1, 5.2))
     figure.suptitle(title + ("" if whole else ", front half of the rock cut away"), fontsize=10)
@@ -108,14 +108,15 @@ def of_body(rock, joints, bounds, title, whole, kind, initial):
         parts = [space.Part(surface.points, surface.polygons, colour(norm(values)))
                  for surface, (values, norm, colour, _) in drawn]
         space.draw(ax, [*parts, edges], bounds)
+        space.draw_wells(ax, wells)
         bars(figure, ax, of_rock, of_fractures, location="bottom", shrink=0.7, pad=0.02)
     return figure
 
 
-def of_step(grid, fractures, title, whole=False, kind=FLUID, initial=None):
+def of_step(grid, fractures, title, whole=False, kind=FLUID, initial=None, wells=()):
     """Returns the figure of a grid of the rock. The grid of the fractures and the text `initial` may be None."""
     if read.is_plane(grid):
         return of_plane(read.surface(grid), read.segments(fractures) if fractures else None, title, kind, initial)
     rock = space.outer(read.surface(grid if whole else read.behind(grid)))
     bounds = np.reshape(grid.GetBounds(), (3, 2)).T
-    return of_body(rock, read.surface(fractures) if fractures else None, bounds, title, whole, kind, initial)
+    return of_body(rock, read.surface(fractures) if fractures else None, bounds, title, whole, kind, initial, dict(wells))

@@ -224,10 +224,12 @@ def on_faces(view, title, length, stress):
     return figure
 
 
-def of_step(rock, grid, names, title, singles=(), whole=False):
-    """Returns the figure of the grids of rock and fractures (at least one face); `singles` as in results.json."""
+def of_step(rock, grid, names, title, singles=(), whole=False, wells=()):
+    """Returns the figure of the grids of rock and fractures (at least one face).
+
+    `singles` as in results.json, `wells` as in read.wells."""
     if grid.GetCell(0).GetCellDimension() == 1:
         surface = read.segments(grid)
         return along(surface, names, title, *scales(rock, surface.cell_data), singles)
-    view = Network(rock, grid, names, singles, whole)
+    view = Network(rock, grid, names, singles, whole, wells)
     return on_faces(view, title, *scales(rock, view.data))

@@ -149,8 +149,10 @@ def draw_tendency(figure, ax, shapes, norm, colours):
         ax.legend([plt.Rectangle((0, 0), 1, 1, color=colours(np.nan))], ["open"], loc="lower left", bbox_to_anchor=(0, 1))
 
 
-def of_step(rock, joints, names, title, singles=(), whole=False):
-    """Returns the figure of the grids of rock and fractures with these names; `singles` as in results.json."""
+def of_step(rock, joints, names, title, singles=(), whole=False, wells=()):
+    """Returns the figure of the grids of rock and fractures with these names.
+
+    `singles` as in results.json, `wells` as in read.wells; they are drawn in 3D."""
     if read.is_plane(rock):
         return of_plane(rock, joints, names, title, singles, whole)
-    return of_body(Network(rock, joints, names, singles, whole), rock, title)
+    return of_body(Network(rock, joints, names, singles, whole, wells), rock, title)

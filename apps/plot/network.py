@@ -5,10 +5,11 @@ import numpy as np
 import read
 import space
 from places import region
-from style import INK
+from style import FAINT, INK
 
 MAX_NAMES = 12  # of fractures in one view
 MAX_LISTED = 8  # hidden fractures
+WALLS = 0.2  # opacity of faces of the rock inside of its box: slopes and excavations
 
 
 class Network:
@@ -16,7 +17,7 @@ class Network:
 
     The box is the rock, or the region with slip if it is much smaller. Faces outside of it are left out."""
 
-    def __init__(self, rock, joints, names, singles=(), whole=False):
+    def __init__(self, rock, joints, names, singles=(), whole=False, wells=()):
         faces, skin = read.surface(joints), space.outer(read.surface(rock))
         data = faces.cell_data
         body = space.bounds_of(skin.points[np.concatenate(skin.polygons)])
@@ -35,24 +36,32 @@ class Network:
             edges = edges._replace(
                 polygons=[edges.polygons[k] for k in np.flatnonzero(space.inside(ends, self.bounds))]
             )
+        centres = np.array([skin.points[polygon].mean(axis=0) for polygon in skin.polygons])
+        away = np.min(np.abs(centres[:, None] - body), axis=(1, 2)) > 1e-6 * np.max(body[1] - body[0])
+        walls = skin.part(np.flatnonzero(away & space.inside(centres, self.bounds)))
         rims = space.Part(faces.points, list(bulk.rim(self.surface, None)), INK)
-        self.lines = [edges, rims]
+        self.others = [edges, rims, space.Part(walls.points, walls.polygons, FAINT, WALLS)]
+        self.wells = {name: well for name, well in dict(wells).items() if np.all(space.inside(well, self.bounds))}
         self.places = space.visible(self.surface, self.numbers, self.bounds)
         self.hidden = [self.names[k] for k in space.hidden(self.surface, self.numbers, self.places, self.bounds)]
 
     def draw(self, ax, colours):
-        space.draw(ax, [space.Part(self.surface.points, self.surface.polygons, colours), *self.lines], self.bounds)
+        space.draw(ax, [space.Part(self.surface.points, self.surface.polygons, colours), *self.others], self.bounds)
+        space.draw_wells(ax, self.wells)
 
     def write_names(self, ax):
-        """Writes names, those with the largest tangential jumps first; of many fractures only those with a jump."""
+        """Writes names of wells and fractures, those with the largest tangential jumps first.
+
+        Of many fractures only those with a jump have names."""
         jump = np.linalg.norm(self.data["jump local"][:, 1:], axis=1)
         largest = {k: np.max(jump[self.numbers == k]) for k in self.places}
         order = sorted(self.places, key=lambda k: -largest[k])
         if len(order) > MAX_NAMES:
             order = [k for k in order if largest[k] > 1e-3 * largest[order[0]]]
-        space.write_names(
-            ax, [(self.names[k], self.places[k]) for k in order if len(self.places[k])], self.bounds, MAX_NAMES
-        )
+        named = [(self.names[k], self.places[k]) for k in order if len(self.places[k])][:MAX_NAMES]
+        above = [0, 0.045 * np.ptp(space.frame(self.bounds), axis=1).max()]
+        wells = [(name, space.flat(well[:1]) + above) for name, well in self.wells.items()]
+        space.write_names(ax, wells + named, self.bounds)
 
     def note(self):
         """Returns the remark on the region and on hidden fractures."""

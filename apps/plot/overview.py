@@ -20,8 +20,7 @@ def draw_lines(ax, lines, sizes, values, norm, colours):
 
 
 def draw_wells(ax, scene):
-    for name, well in scene["Flow"].get("Wells", {}).items():
-        place = [float(x) for x in well["points"].strip("{}").split(",")]
+    for name, (place,) in read.wells(scene, 2).items():
         ax.plot(*place, "o", ms=6, mfc="white", mec=INK, mew=1.5, zorder=5)
         text = ax.annotate(name, place, (7, -3), textcoords="offset points", zorder=6)
         text.set_path_effects([patheffects.withStroke(linewidth=2.5, foreground="white")])

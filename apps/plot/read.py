@@ -106,6 +106,12 @@ def scene(directory):
         raise PlotError(f"{path}: is not valid XML ({error})") from None
 
 
+def wells(scene, dim):
+    """Returns {name: points (n, dim)} of the wells; `scene` as in scene()."""
+    return {name: np.array([float(x) for x in well["points"].strip("{}").split(",")]).reshape(-1, dim)
+            for name, well in scene.get("Flow", {}).get("Wells", {}).items()}
+
+
 def entries(section, name):
     """Yields the nonempty values of all entries of a name in a section and its subsections."""
     for key, value in section.items():

@@ -12,7 +12,7 @@ from matplotlib import patheffects
 from matplotlib.colors import to_rgb
 from places import place_of_name
 from read import PlotError
-from style import FAINT, INK, NOISE, plt
+from style import FAINT, INK, LINES, NOISE, plt
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 # Polygons, or lines as polygons of two corners. Colours: an array (polygons, at least 3), or one colour.
@@ -23,7 +23,9 @@ WIDTH = 2.0  # of lines, in pixels
 LIGHT = 0.25  # part of the brightness that depends on the direction of a face
 ANGLES = np.radians([-58, 22])  # of the viewer: from x towards y, and above the horizontal plane
 SHARP = 30  # degrees; edges of the rock with larger angles are drawn
+WELL = LINES[0]
 SEEN = 0.05  # smallest visible fraction of a fracture that is not hidden
+MAX_PLACES = 25  # tried for a name
 ROOM = 0.05  # margin around the box / its size
 
 
@@ -186,17 +188,14 @@ def image(parts, bounds, lit=True):
     return vtk_to_numpy(found.GetPointData().GetScalars()).reshape(height, width, 3)[::-1].copy()
 
 
-def visible(surface, numbers, bounds, others=()):
-    """Returns {number: places in the picture where faces with this number are visible (pixels, 2), m}."""
-    found, number = np.unique(numbers, return_inverse=True)
-    code = number + 1
-    colours = np.column_stack([code // 65536, code // 256 % 256, code % 256]) / 255
-    covers = [part._replace(colours="#000000") for part in others]
-    seen = image([Part(surface.points, surface.polygons, colours), *covers], bounds, lit=False).astype(int) @ (
-        65536,
-        256,
-        1,
-    )
+def visible(surface, numbers, bounds):
+    """Returns {number: places in the picture where faces with this number are visible (pixels, 2), m}.
+
+    Colours of the image are the numbers, in the order of their values, plus one; the background is white."""
+    found, code = np.unique(numbers, return_inverse=True)
+    base = np.array([65536, 256, 1])
+    colours = (code[:, None] + 1) // base % 256 / 255
+    seen = image([Part(surface.points, surface.polygons, colours)], bounds, lit=False).astype(int) @ base
     (left, _), (_, top) = frame(bounds)
     step = np.ptp(frame(bounds)[0]) / seen.shape[1]
     rows, columns = np.nonzero((seen > 0) & (seen <= len(found)))
@@ -208,11 +207,7 @@ def visible(surface, numbers, bounds, others=()):
 
 def hidden(surface, numbers, places, bounds):
     """Returns the numbers of fractures of which less than the fraction SEEN of their own view is visible."""
-    pixel = (
-        np.ptp(frame(bounds)[0]) / PIXELS
-        if np.argmax(np.ptp(frame(bounds), axis=1)) == 0
-        else np.ptp(frame(bounds)[1]) / PIXELS
-    ) ** 2
+    pixel = (np.ptp(frame(bounds), axis=1).max() / PIXELS) ** 2
 
     def area(polygon):
         x, y = flat(surface.points[polygon]).T
@@ -274,18 +269,20 @@ def write_coordinates(ax, k, ends, size, middle):
     )
 
 
-def write_names(ax, named, bounds, maximum):
-    """Writes names, [(name, visible places)], at most `maximum`, the first ones first, without overlap."""
-    taken = []
-    for name, places in named[:maximum]:
-        middle = np.mean(places, axis=0)
-        order = np.argsort(np.linalg.norm(places - middle, axis=1), kind="stable")
-        found = place_of_name(
-            name,
-            places[order[:: max(1, len(order) // 9)]],
-            np.full(2, 1.5 * np.ptp(frame(bounds), axis=1).max()),
-            taken,
-        )
+def draw_wells(ax, wells):
+    """Draws wells, {name: points}, in front of all faces, with a dot at the first point."""
+    white = [patheffects.withStroke(linewidth=3, foreground="white")]
+    for points in wells.values():
+        ax.plot(*flat(points).T, color=WELL, linewidth=1.4, path_effects=white)
+        ax.plot(*flat(points[:1]).T, "o", color=WELL, markersize=3.5, path_effects=white)
+
+
+def write_names(ax, named, bounds):
+    """Writes names, [(name, visible places)], the first ones first, without overlap."""
+    taken, extent = [], np.full(2, 1.5 * np.ptp(frame(bounds), axis=1).max())
+    for name, places in named:
+        order = np.argsort(np.linalg.norm(places - np.mean(places, axis=0), axis=1), kind="stable")
+        found = place_of_name(name, places[order[:: max(1, len(order) // MAX_PLACES)]], extent, taken)
         if found:
             taken.append(found)
             text = ax.text(*found[0], name, fontsize=7, ha="center", va="center")

@@ -7,6 +7,7 @@ import argparse
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -67,10 +68,14 @@ def report(options):
     content = read.results(directory)
     dim = content.get("mesh", {}).get("dimension", 3)
     entries = scene.Scene(directory, ROOT / "docs/use/reference.md", dim)
-    progress("pictures")
-    drawn, tables, left_out = pictures(directory, options.dpi)
     start = float(entries.entries.get("Time", {}).get("start", 0))
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
+    with ThreadPoolExecutor() as pool:  # the pictures are drawn by another process
+        drawing = pool.submit(pictures, directory, options.dpi)
+        found = events.of_run(content, start)
+        shown = view.of_run(directory, content, entries.entries, found, progress) if viewer else None
+        progress("pictures")
+        drawn, tables, left_out = drawing.result()
     html = page.of_run(
         directory.resolve().name,
         content,
@@ -80,7 +85,7 @@ def report(options):
         tables,
         drawn,
         left_out,
-        view.of_run(directory, content, entries.entries, events.of_run(content, start), progress) if viewer else None,
+        shown,
         viewer,
     )
     progress("")

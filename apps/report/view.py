@@ -206,8 +206,7 @@ def surface_of(name, frames, centre, arrays, opacity):
 def wells(scene, plane, centre):
     """Returns the names and the points of wells with numbers as coordinates."""
     found = []
-    for name, well in scene.get("Flow", {}).get("Wells", {}).items():
-        points = np.array([float(x) for x in well["points"].strip("{}").split(",")]).reshape(-1, 2 if plane else 3)
+    for name, points in read.wells(scene, 2 if plane else 3).items():
         points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
         found.append({"name": name, "points": np.round(points - centre, 6).tolist()})
     return found

@@ -19,12 +19,16 @@ import places
 import read
 import space
 import style
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 if not shutil.which("Xvfb"):
     print("skipped: Xvfb is missing")
     sys.exit(77)
 
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+CUBE = np.concatenate([SQUARE, SQUARE + [0, 0, 1]])
 
 
 def run(times, *moments):
@@ -156,26 +160,50 @@ class Space(PlotTest):
         self.assertIsNone(places.region(centres, np.zeros(3), whole))
 
     def test_network(self):
-        """The box is that of the rock; every fracture is named or listed as hidden."""
+        """The box is that of the rock; every fracture is named or listed as hidden, and a well is a line with a name."""
         content = self.run_scene("verification/crossing_3d.xml")
         rock, joints = (
             read.grid(read.written_steps(self.folder / "out", kind)[-1][1]) for kind in ("bulk", "fractures")
         )
-        singles = content["single_fractures"]
-        view = network.Network(rock, joints, sorted(content["steps"][-1]["fractures"]), singles, whole=True)
+        singles, wells = content["single_fractures"], {"well": np.array([[0.2, 0.3, 0.9], [0.2, 0.3, 0.5]])}
+        view = network.Network(
+            rock, joints, sorted(content["steps"][-1]["fractures"]), singles, whole=True, wells=wells
+        )
         self.assertTrue(np.allclose(view.bounds.T.ravel(), rock.GetBounds()))
         figure, ax = style.plt.subplots()
         view.draw(ax, np.tile([1.0, 0, 0], (len(view.surface.polygons), 1)))
+        self.assertTrue(np.allclose(ax.lines[-2].get_xydata(), space.flat(wells["well"])))
         drawn = len(ax.texts)
         view.write_names(ax)
-        self.assertEqual(
-            {text.get_text() for text in ax.texts[drawn:]} | set(view.hidden), {one["name"] for one in singles}
-        )
+        names = {text.get_text() for text in ax.texts[drawn:]} | set(view.hidden)
+        self.assertEqual(names, {"well", *(one["name"] for one in singles)})
+
+    def test_walls_of_an_excavation(self):
+        """A tunnel through a body of 5 x 5 x 5 cells has walls, drawn with the fracture, and edges at its ends."""
+        cells = [(i, j, k) for i in range(5) for j in range(5) for k in range(5) if (i, k) != (2, 2)]
+        rock = grid_of([np.array([i, j, k]) + CUBE for i, j, k in cells], 12)
+        joints = grid_of([SQUARE * [5, 5, 0] + [0, 0, 1]], 9)
+        for name, values in (("slip", [1.0]), ("fracture", [0.0]), ("jump local", [[0.0, 1.0, 0.0]])):
+            array = numpy_to_vtk(np.array(values), deep=True)
+            array.SetName(name)
+            joints.GetCellData().AddArray(array)
+        view = network.Network(rock, joints, ["fault"], whole=True)
+        edges, _, walls = view.others
+        self.assertEqual(len(walls.polygons), 4 * 5)
+        self.assertTrue(np.all(abs(walls.points[np.concatenate(walls.polygons)][:, [0, 2]] - 2.5) < 0.6))
+        length = sum(np.linalg.norm(np.diff(edges.points[line], axis=0)) for line in edges.polygons)
+        self.assertAlmostEqual(length, 12 * 5 + 4 * 5 + 2 * 4)
 
 
-def area_vector(polygon):
-    x = polygon - polygon.mean(axis=0)
-    return 0.5 * np.cross(x, np.roll(x, -1, axis=0)).sum(axis=0)
+def grid_of(cells, kind):
+    """Returns a grid of cells of one type from their corners. Neighbours do not share points."""
+    grid, points = vtkUnstructuredGrid(), vtkPoints()
+    points.SetData(numpy_to_vtk(np.concatenate(cells).astype(float), deep=True))
+    grid.SetPoints(points)
+    n = len(cells[0])
+    for k in range(len(cells)):
+        grid.InsertNextCell(kind, n, range(n * k, n * (k + 1)))
+    return grid
 
 
 if __name__ == "__main__":
