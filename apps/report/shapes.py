@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import bulk
 import numpy as np
+from read import Surface
 
 MAX_TRIANGLES = 60000  # of each surface; larger surfaces are decimated
 SHARPEST = 30  # degrees; edges with larger angles are preserved
@@ -46,6 +47,14 @@ def of_surface(surface):
     """Returns the shape of a surface of polygons."""
     owner = np.repeat(np.arange(len(surface.polygons)), [len(p) - 2 for p in surface.polygons])
     return Shape(surface.points, bulk.triangles(surface.polygons), owner, np.arange(len(surface.points))).thinned()
+
+
+def merged(surface):
+    """Returns the polygons of a surface with one point at each place; the pieces of ranks have separate points."""
+    tolerance = 1e-9 * np.max(np.ptp(surface.points, axis=0))
+    places = np.round(surface.points / tolerance)
+    _, first, number = np.unique(places, axis=0, return_index=True, return_inverse=True)
+    return Surface(surface.points[first], [number.reshape(-1)[p] for p in surface.polygons], surface.cell_data, {})
 
 
 def of_traces(lines, width):

@@ -7,7 +7,6 @@ import base64
 from dataclasses import dataclass, field
 
 import bulk
-import figures
 import fractures
 import maps
 import numpy as np
@@ -120,7 +119,7 @@ class Reader:
         found = {"rock": Frame(shape, moved, None, rock_fields(skin))}
         if joints and joints.GetNumberOfCells():
             sizes = fractures.scales(grid, read.arrays(joints.GetCellData())) if moves else (0, 0)
-            lines = read.segments(joints) if plane else read.surface(joints)
+            lines = read.segments(joints) if plane else shapes.merged(read.surface(joints))
             width = RIBBON * np.max(np.ptp(rock.points, axis=0))
             shape = self.shape(lines, (lambda x: shapes.of_traces(x, width)) if plane else shapes.of_surface)
             moved = np.zeros_like(lines.points)

@@ -1,17 +1,19 @@
 """Tests of pictures: loads the program `plot` and its modules.
 
-Requires matplotlib, numpy and VTK's Python. If one is missing, the status is 77, for ctest's "skipped"."""
+Requires matplotlib, numpy, VTK's Python and Xvfb. If one is missing, the status is 77, for ctest's "skipped"."""
 
 import contextlib
 import importlib.util
 import io
+import shutil
 import sys
 
 from program import ROOT, ProgramTest
 
 MISSING = [name for name in ("matplotlib", "numpy", "vtkmodules") if importlib.util.find_spec(name) is None]
+MISSING += [] if shutil.which("Xvfb") else ["Xvfb"]
 if MISSING:
-    print(f"skipped: {sys.executable} has no {', '.join(MISSING)}")
+    print(f"skipped: without {', '.join(MISSING)}")
     sys.exit(77)
 
 spec = importlib.util.spec_from_file_location("sprekk_plot", ROOT / "apps" / "plot" / "__main__.py")

@@ -291,6 +291,18 @@ class Views(ReportTest):
         self.assertEqual([label["text"] for label in shown["labels"]], ["x = 200 m", "y = 200 m", "(0, 0) m"])
         self.assertEqual(shown["times"], ["t = 60 min", "t = 2 h"])
 
+    def test_pieces_of_ranks_share_points(self):
+        """Two squares with a common side have six points, and the values of their polygons."""
+        square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+        pieces = read.Surface(
+            np.concatenate([square, square + [1, 1e-14, 0]]), [np.arange(4), np.arange(4, 8)], {"slip": np.ones(2)}, {}
+        )
+        whole = shapes.merged(pieces)
+        self.assertEqual(len(whole.points), 6)
+        self.assertEqual(list(whole.cell_data), ["slip"])
+        for corners, known in zip(whole.corners(), pieces.corners()):
+            self.assertTrue(np.allclose(corners, known))
+
     def test_steps_of_a_small_view(self):
         """Of more steps than the view has room for, it contains the first and the last one."""
         self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=12", "Output.every=1")
