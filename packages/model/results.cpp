@@ -43,7 +43,6 @@ void remove_tables(const std::string& directory, bool goes_on) {
   std::filesystem::remove(probes, ignored);  // only if empty
 }
 
-/// Owned fracture faces with the outputs on faces.
 io::Piece fractures_with(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
   auto piece = io::fracture_piece(mesh);
   std::vector<Real> number, single;
@@ -213,11 +212,13 @@ void Results::start_probes(const std::optional<EarlierResults>& earlier) {
   for (std::size_t t = 0; t < tables.size(); ++t) {
     auto& rows = tables[t].rows;
     const auto before = earlier ? earlier->probes.value(tables[t].name, json::object()) : json::object();
-    if (before.value("definition", "") == definitions[t])
+    const bool continued = before.value("definition", "") == definitions[t];
+    if (continued)
       rows = earlier_rows(tables[t].name, before, earlier->journal);
     else if (known)
       rows = {{model_.time(), values[t]}};
-    probes_begun_[tables[t].name] = {{"definition", definitions[t]}, {"first", first_of(rows)}};
+    probes_begun_[tables[t].name] = {{"definition", definitions[t]},
+                                     {"first", continued ? before.at("first") : first_of(rows)}};
   }
   series_.emplace(model_.system().comm(), directory_, std::move(tables),
                   io::TimeUnit{json_["time_unit"]["name"], json_["time_unit"]["seconds"]});
@@ -483,8 +484,7 @@ void Results::finish(const std::string& status, const std::string& reason) {
   }
 }
 
-/// Finishes the results on a full disk by overwriting the existing file. Without the description of mesh and solver,
-/// there is space for all steps, or at least for those already written.
+/// Overwrites the file on a full disk. Without mesh and solver there is space for all steps, or for the earlier ones.
 void Results::finish_in_place(const std::string& reason) {
   json_["status"] = "failed";
   json_["reason"] = reason;
