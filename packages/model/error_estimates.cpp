@@ -9,12 +9,15 @@ estimate::ErrorEstimator make_error_estimator(Model& model) {
   physics::for_each_physics([&]<physics::HasEstimate P>(P) {
     if (auto error = P::Estimate::mesh_error(model.setting(), model.system())) errors.push_back(std::move(error));
   });
-  return {model.system(), std::move(errors), model.setting().start,
-          [&](const fields::BlockVector& x, const fields::BlockVector& right_side, fields::BlockVector& dx,
-              Real tolerance) -> std::string {
-            const auto report = model.newton().solve_linearized(x, right_side, dx, tolerance);
-            return report.converged ? "" : report.reason;
-          }};
+  estimate::ErrorEstimator estimator(model.system(), std::move(errors), model.setting().start,
+                                     [&](const fields::BlockVector& x, const fields::BlockVector& right_side,
+                                         fields::BlockVector& dx, Real tolerance) -> std::string {
+                                       const auto report =
+                                           model.newton().solve_linearized(x, right_side, dx, tolerance);
+                                       return report.converged ? "" : report.reason;
+                                     });
+  if (model.scene().accuracy) estimator.request_correction();
+  return estimator;
 }
 
 estimate::State present_state(const Model& model, const std::vector<assembly::OutputField>& outputs) {

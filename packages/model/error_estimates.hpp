@@ -10,7 +10,8 @@
 
 namespace sprekk::model {
 
-/// Creates the estimator of the errors of all physics. It refers to the model. Collective.
+/// Creates the estimator of the errors of all physics. It refers to the model. With the section Accuracy it always
+/// computes the errors of the unknowns. Collective.
 estimate::ErrorEstimator make_error_estimator(Model& model);
 
 /// Present state of a model with its outputs. Refers to both.

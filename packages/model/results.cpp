@@ -143,7 +143,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   if (earlier)
     for (const auto& entry : earlier->journal) ends_.push_back(entry.at("step").at("time"));
   const auto& accuracy = model_.scene().accuracy;
-  if (model_.scene().output.error_estimate || accuracy) start_estimator();
+  if (model_.scene().output.error_estimate || accuracy) estimator_.emplace(make_error_estimator(model_));
   if (accuracy) goals_.emplace(*estimator_, accuracy->functionals());
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
@@ -339,17 +339,11 @@ void Results::add_error_bounds(const json& fractures, const std::vector<OutputFi
   }
 }
 
-/// Estimates errors of the present system. With the section Accuracy, errors of the unknowns are always computed.
-void Results::start_estimator() {
-  estimator_.emplace(make_error_estimator(model_));
-  if (model_.scene().accuracy) estimator_->request_correction();
-}
-
 /// Adapts to the changed scene of the model, and perhaps to its changed mesh.
 void Results::follow_change() {
   n_changes_ = model_.n_changes();
   probes_.update_places();
-  if (estimator_) start_estimator();
+  if (estimator_) estimator_.emplace(make_error_estimator(model_));
 }
 
 /// Adds a stage to results.json.

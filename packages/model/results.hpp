@@ -65,7 +65,6 @@ class Results {
   nlohmann::json reactions();
   void add_fractures(nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add(const nlohmann::json& step);
-  void start_estimator();
   void follow_change();
   void begin_stage(const std::string& name, Real time);
   void start_probes(const std::optional<EarlierResults>& earlier);
