@@ -3,6 +3,7 @@
 import numpy as np
 import series
 from events import column, increments, states
+from matplotlib import patheffects
 from style import FAINT, LINES, STYLES, foremost, plt
 
 FEWEST = 20  # smallest number of fractures with a magnitude
@@ -85,6 +86,7 @@ def write_names(ax, events, ends):
             ha="right" if late else "left",
             annotation_clip=False,
         )
+        text.set_path_effects([patheffects.withStroke(linewidth=2, foreground="white", alpha=0.8)])
         box = text.get_window_extent().expanded(1.02, 1.05)
         if any(box.overlaps(other) for other in taken):
             text.remove()

@@ -25,6 +25,7 @@ CAPTIONS = {
 OPEN_ON_PAPER = (
     "addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((d) => { d.open = true; }))"
 )
+LARGEST_TABLE = 1_000_000  # bytes
 VERDICTS = {"passed": "✓", "failed": "✗", "noted": "○"}
 
 
@@ -97,12 +98,15 @@ def figure(name, png):
 
 
 def downloads(files):
-    """Returns links to tables, which the page contains."""
-    links = (
+    """Returns links to tables, which the page contains, and the names of tables that are too large."""
+    links = [
         f"<a download='{name}' href='data:text/csv;base64,{base64.b64encode(content.encode()).decode()}'>{name}</a>"
         for name, content in files
-    )
-    return f"<p class='note'>Tables of all steps: {', '.join(links)}</p>" if files else ""
+        if len(content) <= LARGEST_TABLE
+    ]
+    large = [name for name, content in files if len(content) > LARGEST_TABLE]
+    others = f"; too large for this page, written by <code>sprekk plot</code>: {', '.join(large)}" if large else ""
+    return f"<p class='note'>Tables of all steps: {', '.join(links)}{others}</p>" if files else ""
 
 
 def view_part(view, viewer):

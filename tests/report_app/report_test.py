@@ -31,6 +31,7 @@ import events  # noqa: E402
 import figures  # noqa: E402
 import numbers_in_words  # noqa: E402
 import numpy as np  # noqa: E402
+import page as report_page  # noqa: E402
 import read  # noqa: E402
 import scene  # noqa: E402
 import shapes  # noqa: E402
@@ -67,6 +68,10 @@ class Pages(ReportTest):
         self.assertEqual(len(re.findall("<img ", page)), 9)
         tables = re.findall(r"<a download='(\w+.csv)' href='data:text/csv;base64,([^']*)'", page)
         self.assertEqual([name for name, _ in tables], ["events.csv", "fractures_long.csv", "fractures_wide.csv"])
+        with mock.patch.object(report_page, "LARGEST_TABLE", 10):
+            links = report_page.downloads([("a.csv", "short"), ("b.csv", "longer than ten")])
+        self.assertIn("<a download='a.csv'", links)
+        self.assertIn("too large for this page, written by <code>sprekk plot</code>: b.csv", links)
         self.assertTrue(base64.b64decode(tables[0][1]).startswith(b"fracture,start [s],end [s],slip [m],moment [N],"))
         self.assertEqual(re.findall(r"""(?:src|href)=['"](?!data:|#)[^'"]*""", page), [])
         slip = content["steps"][-1]["fractures"]["shear plane"]["max_slip"]
