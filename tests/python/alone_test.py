@@ -98,6 +98,11 @@ class Folders(unittest.TestCase):
             for name in set(last.columns) & set(here.columns):
                 np.testing.assert_array_equal(last[name].astype(float), here[name], err_msg=name)
             self.assertGreater(len(set(last.columns) & set(here.columns)), 20)
+            singles, known = python.single_fractures.loc[model.time], model.fractures(singles=True)
+            np.testing.assert_array_equal(singles["moment"], known["moment"])
+            self.assertEqual(list(singles.index), list(known.index))
+            wide = python.single_fractures["max_slip"].unstack("fracture")
+            self.assertEqual(wide.shape, (len(python.steps), len(known)))
             for file in ("effective_input.xml", "bulk.pvd", "fractures.pvd", "fractures.csv"):
                 self.assertTrue((Path(folder) / "python" / file).exists(), file)
         with self.assertRaisesRegex(sprekk.Error, "has no results.json"):

@@ -11,6 +11,7 @@ class Results:
     status     "completed", "running", "interrupted" or "failed"; `reason` is the error message
     steps      pandas.DataFrame with the numbers of each step: time, newton_iterations, cuts, ...
     fractures  pandas.DataFrame with the index (time, fracture set); vectors have a column for each component
+    single_fractures  the same for single fractures; .unstack("fracture") has one row for each step
     content    results.json as a dict"""
 
     def __init__(self, folder):
@@ -29,16 +30,26 @@ class Results:
 
     @property
     def fractures(self):
-        import pandas
-        rows = {(step["time"], name): dict(flat(numbers)) for step in self.content["steps"]
-                for name, numbers in step["fractures"].items()}
-        index = pandas.MultiIndex.from_tuples(rows, names=["time", "fracture"])
-        return pandas.DataFrame(list(rows.values()), index=index)
+        return table({(step["time"], name): numbers for step in self.content["steps"]
+                      for name, numbers in step["fractures"].items()})
+
+    @property
+    def single_fractures(self):
+        names = [one["name"] for one in self.content.get("single_fractures", [])]
+        return table({(step["time"], name): {key: values[k] for key, values in step["single_fractures"].items()}
+                      for step in self.content["steps"] for k, name in enumerate(names)})
 
     def probe(self, name):
         """Returns the data of a probe, an xarray.Dataset with units and dimensions."""
         import xarray
         return xarray.open_dataset(self.folder / "probes.h5", group=name, engine="h5netcdf")
+
+
+def table(rows):
+    """Returns a pandas.DataFrame of {(time, fracture): nested numbers}."""
+    import pandas
+    index = pandas.MultiIndex.from_tuples(rows, names=["time", "fracture"])
+    return pandas.DataFrame([dict(flat(numbers)) for numbers in rows.values()], index=index)
 
 
 def flat(numbers, before=""):
