@@ -168,7 +168,9 @@ class Checks(ReportTest):
         found = self.verdicts()
         self.assertEqual(found["laws of contact and friction"].verdict, "noted")
         self.assertNotIn("failed", {check.verdict for check in found.values()})
-        self.assertEqual(len(view.of_run(self.folder / "out")["surfaces"]), 2)
+        rock, joints = view.of_run(self.folder / "out", content, read.scene(self.folder / "out"))["surfaces"]
+        for surface in (rock, joints):  # before and after the excavation
+            self.assertEqual(len({frame["triangles"] for frame in surface["frames"]}), 2)
 
     def test_what_is_wrong_fails(self):
         self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
