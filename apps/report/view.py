@@ -168,7 +168,7 @@ def surface_of(name, frames, centre, arrays, opacity):
     given = [frame for frame in frames if frame]
     names = [one for one in given[-1].fields if all(one in frame.fields for frame in given)]
     scale = max(np.max(np.abs(frame.displacement), initial=0) for frame in given) or 1
-    thin = any(frame.shape.selected is not None for frame in given)
+    thin = any(frame.shape.saved is not None for frame in given)
     described = []
     for one in names:
         fields = [frame.fields[one] for frame in given]
