@@ -137,7 +137,7 @@ Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_own
   Held held;
   Collector collector(held, n_owned);
   const auto add = [&](int k, LocalIndex facet, const mesh::Vector& x) {
-    for (int c = 0; c < n_components; ++c)
+    for (int c = 0; c < n_components && facet >= 0; ++c)
       if (conditions[k].values[c]) collector.add({GlobalIndex(facet) * n_components + c, k, c, x});
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k) {

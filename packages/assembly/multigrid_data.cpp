@@ -25,7 +25,7 @@ RCP<MultiVector> owned_coordinates(const mesh::Mesh& mesh, const fields::Layout&
     for (int i = 0; i < mesh.dim(); ++i) view(n, i) = mesh.coordinates[n * mesh.dim() + i];
   const int n_faces = mesh::n_faces(mesh.shape);
   for (LocalIndex face = 0; face < mesh.n_owned_cells * n_faces && on_facets; ++face)
-    if (const LocalIndex facet = mesh.facets->of_cell[face]; facet < layout.n_owned_entities()) {
+    if (const LocalIndex facet = mesh.facets->of_cell[face]; facet >= 0 && facet < layout.n_owned_entities()) {
       const auto x = mesh::face_centre(mesh::face_corners(mesh, face / n_faces, face % n_faces));
       for (int i = 0; i < mesh.dim(); ++i) view(facet, i) = x[i];
     }

@@ -81,6 +81,8 @@ struct PartitionReport {
 ///
 /// A facet belongs to the owner of the adjacent cell, or fracture face, with the lowest number. A fracture face as a
 /// facet belongs to the owner of the face.
+///
+/// Facets of fractures alone (`in_rock` false) are fracture faces and ridges.
 struct Facets {
   /// Ridge of a fracture face on the boundary of the domain.
   struct Rim {
@@ -89,11 +91,12 @@ struct Facets {
     int boundary;
   };
   std::vector<GlobalIndex> id;            ///< [facet] global number, independent of the partition; owned facets first
-  std::vector<LocalIndex> of_cell;        ///< [cell * n_faces(shape) + local face] facet
+  std::vector<LocalIndex> of_cell;        ///< [cell * n_faces(shape) + local face] facet; -1: none
   std::vector<LocalIndex> fracture_face;  ///< [fracture face] facet
   std::vector<LocalIndex> ridge;  ///< [fracture face * n_face_corners(shape) + k] facet; ridge k: see ridge_points()
   std::vector<Rim> rims;
   LocalIndex n_owned = 0;
+  bool in_rock = true;  ///< faces of cells off fractures are facets
 };
 
 /// Part of the mesh on one rank. Owned entities come first in every list, ghosts follow. Counts "n_..." include ghosts,

@@ -201,12 +201,17 @@ void check_ridges(const Mesh& mesh, const std::vector<LocalIndex>& giver) {
   }
 }
 
-/// Returns the local numbers of `ids` in `all`; the first n_owned entries and the other ones are each sorted.
+/// Returns the local numbers of `ids` in `all`; the first n_owned entries and the other ones are each sorted. -1
+/// remains -1.
 std::vector<LocalIndex> local_numbers(const std::vector<GlobalIndex>& ids, const std::vector<GlobalIndex>& all,
                                       LocalIndex n_owned) {
   const auto middle = all.begin() + n_owned;
   std::vector<LocalIndex> result;
   for (const GlobalIndex id : ids) {
+    if (id < 0) {
+      result.push_back(-1);
+      continue;
+    }
     auto found = std::lower_bound(all.begin(), middle, id);
     if (found == middle || *found != id) found = std::lower_bound(middle, all.end(), id);
     result.push_back(static_cast<LocalIndex>(found - all.begin()));
@@ -221,16 +226,19 @@ std::vector<GlobalIndex> ridge_ids(const Mesh& mesh) {
                  mesh.comm);
 }
 
-RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh) {
-  std::vector<LocalIndex> across;
-  base::collectively(*mesh->comm, [&] { across = faces_across(*mesh); });
+RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh, bool in_rock) {
   const int n_faces = mesh::n_faces(mesh->shape), n_ridges = n_face_corners(mesh->shape);
-  const auto of_cells = face_givers(*mesh, across), of_faces = ridge_givers(*mesh);
+  std::vector<LocalIndex> of_cells(static_cast<std::size_t>(mesh->n_cells()) * n_faces, -1);
+  base::collectively(*mesh->comm, [&] {
+    if (in_rock) of_cells = face_givers(*mesh, faces_across(*mesh));
+  });
+  const auto of_faces = ridge_givers(*mesh);
   base::collectively(*mesh->comm, [&] { check_ridges(*mesh, of_faces); });
   auto cells = numbers(mesh->cell_id, mesh->n_owned_cells, n_faces, of_cells, mesh->comm);
   auto ridges = numbers(face_ids(*mesh), mesh->n_owned_fracture_faces, n_ridges, of_faces, mesh->comm);
   auto faces = face_ids(*mesh);
   const auto facets = rcp(new Facets);
+  facets->in_rock = in_rock;
   const auto own = [&](const auto& ids, LocalIndex n, const auto& is_own) {  // numbers ascend with the entities
     const auto before = facets->id.size();
     for (LocalIndex k = 0; k < n; ++k)
@@ -247,7 +255,8 @@ RCP<const Mesh> with_facets(const RCP<const Mesh>& mesh) {
   std::vector<GlobalIndex> ghosts;
   for (const auto* ids : std::array<const std::vector<GlobalIndex>*, 3>{&cells, &ridges, &faces})
     for (const GlobalIndex id : *ids)
-      if (!std::binary_search(facets->id.begin(), facets->id.begin() + facets->n_owned, id)) ghosts.push_back(id);
+      if (id >= 0 && !std::binary_search(facets->id.begin(), facets->id.begin() + facets->n_owned, id))
+        ghosts.push_back(id);
   std::sort(ghosts.begin(), ghosts.end());
   ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
   facets->id.insert(facets->id.end(), ghosts.begin(), ghosts.end());

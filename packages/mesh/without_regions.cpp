@@ -61,7 +61,7 @@ class Excavation {
     mesh_.facets = Teuchos::null;
     mesh_.origin = origin_;
     const auto result = rcp(new const Mesh(std::move(mesh_)));
-    return whole_.facets.is_null() ? result : with_origin_of_facets(with_facets(result));
+    return whole_.facets.is_null() ? result : with_origin_of_facets(with_facets(result, whole_.facets->in_rock));
   }
 
  private:
@@ -279,7 +279,7 @@ class Excavation {
     const auto take = [&](const std::vector<LocalIndex>& of, const std::vector<LocalIndex>& old,
                           const std::vector<LocalIndex>& whole_of, int width) {
       for (std::size_t k = 0; k < of.size(); ++k)
-        numbers[of[k]] = whole_.facets->id[whole_of[old[k / width] * width + k % width]];
+        if (of[k] >= 0) numbers[of[k]] = whole_.facets->id[whole_of[old[k / width] * width + k % width]];
     };
     take(mesh->facets->of_cell, cells_.old, whole_.facets->of_cell, n_faces(whole_.shape));
     take(mesh->facets->ridge, old_faces_, whole_.facets->ridge, n_face_corners(whole_.shape));

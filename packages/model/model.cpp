@@ -79,9 +79,9 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     whole_mesh_ =
         mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unconstrained : nullptr); }, comm);
     whole_mesh_ = draft.value.refined(whole_mesh_);
-    bool facets = false;
-    physics::for_each_physics([&](auto physics) { facets = facets || physics.needs_facets(draft.value); });
-    if (facets) whole_mesh_ = mesh::with_facets(whole_mesh_);
+    auto facets = physics::Facets::none;
+    physics::for_each_physics([&](auto physics) { facets = std::max(facets, physics.needs_facets(draft.value)); });
+    if (facets != physics::Facets::none) whole_mesh_ = mesh::with_facets(whole_mesh_, facets == physics::Facets::all);
   }
   auto made = drafted(std::move(draft.value), unconstrained);
   scene_ = made.scene;

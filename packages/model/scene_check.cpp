@@ -65,7 +65,7 @@ void compare_error_estimate(Comparison& comparison, const std::string& place, co
     if (const auto why = P::Estimate::missing(scene); !why.empty()) comparison.fail(place, why);
     if (!P::is_in(scene)) return;
     any_quantity = any_quantity || !P::Estimate::quantities().empty();
-    any_flux = any_flux || P::needs_facets(scene);
+    any_flux = any_flux || P::needs_facets(scene) != physics::Facets::none;
   });
   if (!any_quantity) comparison.fail(place, "has nothing to estimate in this scene");
   const auto& cell = scene.mesh.cell;

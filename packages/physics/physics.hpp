@@ -47,6 +47,9 @@ struct Prescribed {
   std::vector<Real> lower_corner = {}, upper_corner = {};  ///< only nodes in this box; empty: all nodes
 };
 
+/// Facets (see mesh::Facets) with unknowns: none, those of fractures, all.
+enum class Facets { none, of_fractures, all };
+
 /// Quantity transported by the fluid of Flow.
 struct CarriedQuantity : transport::Carried {
   /// Second-order transport (see transport::Antidiffusion): storage capacity, per unit of u, of local cells (per
@@ -210,8 +213,8 @@ struct Physics {
 
   /// Returns whether the scene uses this physics.
   static bool is_in(const Scene&) { return false; }
-  /// Returns whether this physics has unknowns on facets.
-  static bool needs_facets(const Scene&) { return false; }
+  /// Returns the facets on which this physics has unknowns.
+  static Facets needs_facets(const Scene&) { return Facets::none; }
   /// Returns whether the scene defines the initial unknowns. Otherwise they have no meaning before the first step.
   static bool has_initial_state(const Scene&) { return true; }
   /// Names of entries that must not change when the scene of a live model changes. The state is measured relative to

@@ -30,7 +30,7 @@ std::unique_ptr<assembly::Module> make_advection(mesh::Shape shape, const FlowIn
                                                  const std::optional<std::vector<Real>>& stored = {});
 
 /// Creates the advection along fractures with the flow of FractureFlow through ridges. All flows into a ridge mix
-/// there. `widens`: apertures depend on "widening" of PoroelasticCoupling. `stored`: storage capacity of the filling of
+/// there. `widens`: apertures depend on "widening" of FractureOpening. `stored`: storage capacity of the filling of
 /// local fracture faces, per volume.
 std::unique_ptr<assembly::Module> make_fracture_advection(mesh::Shape shape, const FractureFlowParameters& flow,
                                                           const Carried& carried, bool widens,

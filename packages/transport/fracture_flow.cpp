@@ -3,8 +3,10 @@
 #include "assembly/capabilities.hpp"
 #include "assembly/term.hpp"
 #include "base/host_table.hpp"
+#include "base/over_ranks.hpp"
 #include "mesh/extents.hpp"
 #include "transport/fracture_faces.hpp"
+#include "transport/hybrid_diffusion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +20,7 @@ namespace {
 template <Shape shape>
 class FractureFlow final : public assembly::Module,
                            public assembly::Loads,
+                           public assembly::InitialValues,
                            public assembly::LaggedCoefficients,
                            public assembly::Totals {
  public:
@@ -31,8 +34,12 @@ class FractureFlow final : public assembly::Module,
   std::string name() const override { return "fracture flow"; }
   void set_fields(const std::set<std::string>& fields) override { widens_ = fields.count("widening") > 0; }
 
-  assembly::Declaration declare(const mesh::Mesh&) const override {
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
+    if (parameters_.alone) {
+      d.unknowns = {pressure(mesh)};
+      d.scales = {{"pressure", 1e-12}};
+    }
     d.couplings = {{Loop::fracture_cells, "face pressure", drivers(parameters_, widens_)}};
     using assembly::Summary;
     d.outputs = {
@@ -59,6 +66,10 @@ class FractureFlow final : public assembly::Module,
       outflow_.add(condition, mesh_->facets->ridge[rim.face * n + rim.ridge], area, x);
     });
     outflow_.bind(context, block_, parameters_.fluid);
+  }
+
+  void initial(const assembly::Rows& x) const override {
+    if (parameters_.alone && parameters_.alone->initial) put_initial(*mesh_, *parameters_.alone->initial, x[block_]);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
@@ -119,6 +130,21 @@ class FractureFlow final : public assembly::Module,
 
  private:
   static constexpr Real of_displacement = 1e-2, of_size = 1e-4;  // see open_
+
+  /// Unknown of the facets of fractures. Collective.
+  assembly::Unknown pressure(const mesh::Mesh& mesh) const {
+    Real widest = 0;
+    for (const auto& face : parameters_.faces) widest = std::max(widest, face.along.transmissivity());
+    const Real ridge = dim == 2 ? 1 : std::sqrt(mesh::typical_face_area(mesh)),
+               conductance = base::max_over_ranks(*mesh.comm, widest) * ridge / mesh::largest_extent(mesh);
+    assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, "pressure", parameters_.alone->row};
+    facets.row.push_back({"pressure", conductance});
+    facets.balance = true;
+    facets.reactions = {parameters_.outflow.inflows, "", "region_" + parameters_.outflow.inflows,
+                        parameters_.outflow.unit};
+    facets.near_null_space = assembly::NearNullSpace::constants;
+    return facets;
+  }
 
   void set_flow(const assembly::Context& context) {
     std::vector<int> columns;
@@ -222,7 +248,7 @@ class FractureFlow final : public assembly::Module,
   }
 
   FractureFlowParameters parameters_;
-  bool widens_ = false;  // by "widening" of PoroelasticCoupling, on which T depends
+  bool widens_ = false;  // by "widening" of FractureOpening, on which T depends
   RCP<const mesh::Mesh> mesh_;
   int block_ = -1, widening_ = -1, carried_ = -1;  // face pressure, widening, field that changes the fluid
   Real size_ = 0;                                  // largest extent of the domain, m

@@ -14,6 +14,12 @@
 
 namespace sprekk::transport {
 
+/// Pressure in fractures of impermeable rock.
+struct FracturePressure {
+  std::optional<base::Expression> initial;  ///< pressure at the start; none: undefined
+  assembly::Size row = {};                  ///< further terms of the typical size of rows
+};
+
 struct FractureFlowParameters {
   /// Hydraulic data of one fracture face.
   struct Face {
@@ -29,8 +35,9 @@ struct FractureFlowParameters {
   std::array<Real, 3> weight{};            ///< rho_0 g, N/m^3
   OutflowNames outflow = {};
   std::vector<FluxCondition> conditions = {};  ///< only those of fractures
+  std::optional<FracturePressure> alone = {};  ///< rock without flow: the module declares "face pressure"
   Real softness = 0;                           ///< estimated widening per pressure, m/Pa, of fractures with "widening"
-                                               ///< of PoroelasticCoupling, on which T depends
+                                               ///< of FractureOpening, on which T depends
 };
 
 /// Creates the module of the flow in fractures. For a face F, and for each of its ridges i, the rows of "face pressure"
@@ -39,6 +46,9 @@ struct FractureFlowParameters {
 /// The adjacent cells add -q to the row of F. q_i is the hybrid form of HybridDiffusion on the face, with the
 /// transmissivity as mobility. All faces that end in a ridge share its pressure, so flow through intersections is
 /// conservative.
+///
+/// Without flow in the rock, the faces and ridges of fractures are the only facets, and the sides of fractures are
+/// impermeable.
 ///
 /// If another fracture cuts F, half of its width separates F from the common ridge. This adds the resistance
 /// 1/(exchange of the cutting fracture x aperture of F x length of the ridge) to T.

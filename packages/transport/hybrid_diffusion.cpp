@@ -221,20 +221,26 @@ class HybridDiffusion final : public assembly::Module,
 
 void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& cells,
                  const View<Real*>& facets) {
-  const base::HostTable<Real*> in_cells(cells), on_facets(facets);
+  const base::HostTable<Real*> in_cells(cells);
+  for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c)
+    in_cells(c) = assembly::cell_mean(mesh, c, [&](const auto& x) { return u(x, 0); })[1];
+  in_cells.on_device();
+  put_initial(mesh, u, facets);
+}
+
+void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& facets) {
+  const base::HostTable<Real*> values(facets);
   const auto put = [&](LocalIndex facet, const mesh::Vector& x) {
-    if (facet < mesh.facets->n_owned) on_facets(facet) = u(x, 0);
+    if (facet >= 0 && facet < mesh.facets->n_owned) values(facet) = u(x, 0);
   };
   const int n_faces = mesh::n_faces(mesh.shape), n_ridges = mesh::n_face_corners(mesh.shape);
-  for (LocalIndex c = 0; c < mesh.n_cells(); ++c) {
-    if (c < mesh.n_owned_cells) in_cells(c) = assembly::cell_mean(mesh, c, [&](const auto& x) { return u(x, 0); })[1];
-    for (int k = 0; k < n_faces; ++k)
-      put(mesh.facets->of_cell[c * n_faces + k], mesh::face_centre(mesh::face_corners(mesh, c, k)));
-  }
-  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f)
+  for (LocalIndex f = 0; f < mesh.n_cells() * n_faces && mesh.facets->in_rock; ++f)
+    put(mesh.facets->of_cell[f], mesh::face_centre(mesh::face_corners(mesh, f / n_faces, f % n_faces)));
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f) {
+    put(mesh.facets->fracture_face[f], mesh.fracture_faces[f].centre);
     for (int k = 0; k < n_ridges; ++k) put(mesh.facets->ridge[f * n_ridges + k], mesh::ridge_centre(mesh, f, k));
-  in_cells.on_device();
-  on_facets.on_device();
+  }
+  values.on_device();
 }
 
 std::unique_ptr<assembly::Module> make_hybrid_diffusion(Shape shape, HybridDiffusionParameters parameters) {

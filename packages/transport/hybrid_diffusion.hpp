@@ -58,5 +58,7 @@ std::unique_ptr<assembly::Module> make_hybrid_diffusion(mesh::Shape shape, Hybri
 /// Sets the initial values of u: means over cells, and values at the centres of facets, including those of fractures.
 void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& cells,
                  const View<Real*>& facets);
+/// Sets the initial values of u on the facets of a mesh that has facets of fractures alone.
+void put_initial(const mesh::Mesh& mesh, const base::Expression& u, const View<Real*>& facets);
 
 }  // namespace sprekk::transport

@@ -39,7 +39,7 @@ struct FractureStorageParameters {
   std::vector<Real> minimum = {};   ///< [local fracture face] residual aperture, m
   laws::Fluid fluid = {};
   base::Expression initial = 0;  ///< pressure at the start, Pa
-  bool widens = false;           ///< adds the field "widening" of PoroelasticCoupling to the aperture
+  bool widens = false;           ///< adds the field "widening" of FractureOpening to the aperture
   std::optional<FluidChange> change = {};
 };
 

@@ -123,7 +123,7 @@ class Finder {
         const auto part = clip(cell, segment, 0, 1);
         if (part.low >= part.high) continue;
         here[segment.well] += (part.high - part.low) * segment.length;
-        connect(cell, segment, part.low, part.high);
+        if (!parameters_.mobility.values.empty()) connect(cell, segment, part.low, part.high);
       }
     const auto all = base::sum_over_ranks(*mesh_->comm, here);
     for (std::size_t w = 0; w < n; ++w) {
@@ -135,6 +135,10 @@ class Finder {
                            dim == 2 ? "lies outside of the domain"
                                     : fmt::format("only {:.6g} of {:.6g} m are inside of the domain", all[w], length));
     }
+    for (std::size_t w = 0; w < n && parameters_.mobility.values.empty(); ++w)
+      if (all[n + w] == 0)
+        return fmt::format("Sprekk > Flow > Wells > {} > \"points\": {} no fracture, and the rock is impermeable",
+                           parameters_.wells[w].name, dim == 2 ? "lies on" : "cross");
     if (dim == 2)  // a well on a fracture is not connected to the rock
       connections_.erase(std::remove_if(connections_.begin() + static_cast<std::ptrdiff_t>(in_fractures),
                                         connections_.end(), [&](const auto& c) { return all[n + c.well] > 0; }),

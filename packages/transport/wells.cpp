@@ -26,8 +26,11 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
 
   assembly::Declaration declare(const mesh::Mesh&) const override {
     assembly::Declaration d;
-    d.couplings = {{assembly::Loop::cells, "pressure", {"pressure"}},
-                   {assembly::Loop::cells, "face pressure", {"face pressure"}}};
+    if (in_rock())
+      d.couplings = {{assembly::Loop::cells, "pressure", {"pressure"}},
+                     {assembly::Loop::cells, "face pressure", {"face pressure"}}};
+    else
+      d.couplings = {{assembly::Loop::fracture_cells, "face pressure", {"face pressure"}}};
     if (widens_) {
       d.couplings.push_back({assembly::Loop::fracture_cells, "face pressure", {"widening"}});
       d.history = {{"widening", fields::Entity::fracture_face, 1}};
@@ -48,7 +51,6 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
 
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
-    const std::vector<int> blocks = {context.field("pressure"), context.field("face pressure")};
     const auto [connections, failure] = find_well_connections(*mesh_, parameters_);
     connections_ = connections;
     if (widens_) widening_ = context.field("widening");
@@ -57,19 +59,19 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
       const bool widens = widens_ && c.face >= 0;
       if (well(c).pressure) exchange_[c.face >= 0].add(c.row, widens ? c.index : index(c), c.face);
     }
-    for (int k = 0; k < 2; ++k) {
+    for (const int k : places()) {
       const bool widens = widens_ && k == 1;
-      exchange_[k].bind(context, blocks[k], parameters_.fluid,
+      blocks_[k] = context.field(k == 0 ? "pressure" : "face pressure");
+      exchange_[k].bind(context, blocks_[k], parameters_.fluid,
                         widens ? parameters_.faces : std::vector<laws::Conduit>(), change(k == 1));
-      load_[k] = assembly::Load(context.layout(blocks[k]).n_owned());
-      blocks_[k] = blocks[k];
+      load_[k] = assembly::Load(context.layout(blocks_[k]).n_owned());
     }
     bind_carried(context);
     SPREKK_CHECK(failure.empty(), "{}", failure);
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    for (int k = 0; k < 2; ++k) {
+    for (const int k : places()) {
       exchange_[k].add_residual(state, r);
       load_[k].add_to(r[blocks_[k]]);
     }
@@ -77,7 +79,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
   }
 
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override {
-    for (const auto& exchange : exchange_) exchange.add_jacobian(state, J);
+    for (const int k : places()) exchange_[k].add_jacobian(state, J);
     for (const auto& injected : injected_) injected.add_jacobian(state, J);
   }
   bool symmetric(const assembly::State&) const override { return injected_.empty(); }
@@ -99,7 +101,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
                      parameters_.wells[w].name, state.t);
     }
     std::array<std::vector<Real>, 2> outside;
-    for (int k = 0; k < 2; ++k) {
+    for (const int k : places()) {
       load_[k].set([&](const auto& rows) {
         for (const auto& c : connections_) {
           if ((c.fracture >= 0) != (k == 1)) continue;
@@ -188,6 +190,10 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
   }
 
  private:
+  bool in_rock() const { return !parameters_.mobility.values.empty(); }
+  /// Numbers of the places of connections: 0: rock, 1: fractures.
+  std::vector<int> places() const { return in_rock() ? std::vector<int>{0, 1} : std::vector<int>{1}; }
+
   /// Residual of rows with wells of prescribed pressure, divided by the sum of W(connection) of these wells, Pa: [rock,
   /// fractures] by row. If W is large compared with the conductances around it, the pressure drop is near round-off.
   /// The balance of the row is then more accurate than W times the drop.
@@ -197,7 +203,7 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
     if (state.unbalanced.empty()) return sums;
     for (const auto& c : connections_)
       if (well(c).pressure) sums[c.fracture >= 0][c.row] += W(c);
-    for (int k = 0; k < 2; ++k) {
+    for (const int k : places()) {
       const auto unbalanced = base::to_host(state.unbalanced[blocks_[k]]);
       for (auto& [row, sum] : sums[k]) sum = sum > 0 ? unbalanced(row) / sum : 0;
     }

@@ -27,7 +27,8 @@ struct Well {
 
 struct WellsParameters {
   std::vector<Well> wells;
-  fields::Properties<laws::Mobility> mobility;  ///< this and the following as in HybridDiffusionParameters
+  fields::Properties<laws::Mobility> mobility;  ///< this and the following as in HybridDiffusionParameters; no values:
+                                                ///< impermeable rock, wells are connected to fractures only
   FluxScheme scheme = FluxScheme::rt0;
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};

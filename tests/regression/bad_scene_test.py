@@ -204,6 +204,7 @@ class Scenes(BadInput):
         self.refuse(["Flow: the level of the pressure is not determined"], "check", "a.xml")
         self.refuse(['Materials > rock: "permeability" = {0.25-x} is not positive definite at x = (0.'], "check", self.scene("flow/source_2d.xml"),
                     "--set", "Materials.rock.permeability={0.25-x}", any_point=True)
+        refuse(['Flow: without fractures, needs rock with a "permeability" above 0', 'Flow > "source": needs rock'], "Materials.rock.permeability={0}")
         refuse(['rock > "permeability": is "1+t"; it may depend on x, y, z, not on t'], "Materials.rock.permeability={1+t}")
         refuse(['west > "conductance"', 'must be at least 0'], "Boundary conditions.west.conductance=-1")
         refuse(['west > "conductance": is "t"; it may depend on x, y, z, not on t'], "Boundary conditions.west.conductance=t")
@@ -249,6 +250,14 @@ class Scenes(BadInput):
         self.refuse(['Materials > joint: give either "friction coefficient" or "friction angle"'], "check", xml)
         self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
         self.refuse_set(['"fracture": not available with "displacement", "traction", "confining pressure" and "foundation stiffness"'], "Boundary conditions.moved.fracture=fracture")
+
+    def test_flow_in_fractures_of_impermeable_rock(self):
+        def refuse(expected, scene, *sets):
+            self.refuse(expected, "check", self.scene(scene), *(word for entry in sets for word in ("--set", entry)))
+        impermeable = "Materials.granite.permeability={0}"
+        refuse(["Flow: transport of the temperature needs rock with a \"permeability\" above 0"], "thm/doublet_2d.xml", impermeable)
+        refuse(['Boundary conditions > more > "flux": without "fracture" needs rock'], "poro/injection_2d.xml", impermeable,
+               "Boundary conditions.more.boundary=north", "Boundary conditions.more.flux=1e-9")
 
     def test_measured_loads(self):
         moved, stress = "Boundary conditions.moved.", "Bulk.in-situ stress."

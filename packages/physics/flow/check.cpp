@@ -130,9 +130,32 @@ void compare_rock(Comparison& c, const Material& rock) {
   };
   if (rock.porosity.is_constant()) try_to("Materials > " + name, [&] { rock.capacity(flow.compressibility, {}); });
   if (rock.permeability.empty() && c.is_sound("Materials > " + name))
-    c.fail(place, "missing; it is required with \"Flow\"");
+    c.fail(place, "missing; it is required with \"Flow\"; 0: fluid flows in fractures only");
   if (rock.permeability.empty() || !c.names().dim) return;
+  if (rock.is_impermeable()) return;
+  if (!flows_in_rock(c.scene()))
+    c.fail(place, "must be 0 like that of other rock, or above 0 in all rock: with 0, fluid flows in fractures only");
   if (rock.flows_uniformly()) try_to(place, [&] { rock.mobility(*c.names().dim, flow.viscosity, {}); });
+}
+
+/// Reports entries that need flow in the rock.
+void compare_impermeable(Comparison& c) {
+  const auto& scene = c.scene();
+  if (flows_in_rock(scene)) return;
+  const auto fail = [&](const std::string& place, const std::string& what = "") {
+    c.fail(place, what + "needs rock with a \"permeability\" above 0; with 0, fluid flows in fractures only");
+  };
+  if (c.names().fractures && c.names().fractures->empty()) fail("Flow", "without fractures, ");
+  if (!is_zero(scene.flow->source)) fail("Flow > \"source\"");
+  for_each_physics([&]<HasTransport P>(P) {
+    for (const auto& carried : P::Transport::carried(scene)) fail("Flow", "transport of the " + carried.field + " ");
+  });
+  for (const auto& [name, region] : scene.regions)
+    if (region.pressure) fail("Regions > " + name + " > \"pressure\"");
+  for (const auto& [name, one] : scene.boundary_conditions)
+    if (!one.fracture && (one.flux || one.conductance))
+      fail(fmt::format("Boundary conditions > {} > \"{}\"", name, one.flux ? "flux" : "conductance"),
+           "without \"fracture\" ");
 }
 
 }  // namespace
@@ -140,6 +163,7 @@ void compare_rock(Comparison& c, const Material& rock) {
 std::string Flow::Estimate::missing(const Scene& scene) {
   if (has_unknown_pressure(scene) && !scene.flow) return "is not available where a host program computes the pressure";
   if (!scene.flow) return "";
+  if (!flows_in_rock(scene)) return "is of rock with a permeability above 0";
   const auto& flow = *scene.flow;
   const auto any = [](const auto& all, const auto& has) {
     return std::any_of(all.begin(), all.end(), [&](const auto& named) { return has(named.second); });
@@ -209,6 +233,7 @@ void Flow::compare(Comparison& c) {
   compare_wells(c);
   compare_level(c);
   compare_conditions(c);
+  compare_impermeable(c);
   c.for_each_rock([&](const Material& rock) { compare_rock(c, rock); });
 }
 

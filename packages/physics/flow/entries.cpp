@@ -10,7 +10,8 @@ namespace sprekk::physics {
 
 void Flow::Rock::describe(base::Section& s) {
   entry_of_place(s, permeability, "permeability", "m^2", base::any(),
-                 "permeability k of the rock, required with \"Flow\": one value; XX, YY[, ZZ]; or XX, YY, XY in 2D, "
+                 "permeability k of the rock, required with \"Flow\"; 0: fluid flows in fractures only; one value; XX, "
+                 "YY[, ZZ]; or XX, YY, XY in 2D, "
                  "XX, YY, ZZ, XY, YZ, XZ in 3D; typical: 1e-19 to 1e-16 (material library)");
   entry_of_place(s, porosity, "porosity", "-", base::between(0, 1),
                  "fraction of the volume filled with fluid; typical: 0.001 to 0.1 (material library)");
@@ -27,6 +28,8 @@ void Flow::Rock::check(base::Section& s) const {
 }
 
 bool Flow::Rock::flows_uniformly() const { return transport::is_uniform_tensor(permeability); }
+
+bool Flow::Rock::is_impermeable() const { return permeability.size() == 1 && is_zero(permeability[0]); }
 
 transport::Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const {
   const Real room = value_at("porosity", porosity, base::between(0, 1), x), minimum = room * of_fluid;

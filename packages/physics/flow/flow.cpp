@@ -135,8 +135,11 @@ transport::HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::
                                              .change = change,
                                              .conditions = fluid_conditions(scene, mesh, false),
                                              .coupled_by = {"displacement"}};
-  base::collectively(*mesh.comm, [&] { darcy.mobility = mobility(scene, mesh); });
-  const auto chosen = transport::flux_scheme(scheme_entry(scene), mesh, darcy.mobility);
+  const fields::Properties<laws::Mobility> isotropic{
+      std::vector<laws::Mobility>(mesh.region_names.size(), laws::Mobility::isotropic(1))};
+  if (flows_in_rock(scene)) base::collectively(*mesh.comm, [&] { darcy.mobility = mobility(scene, mesh); });
+  const auto chosen =
+      transport::flux_scheme(scheme_entry(scene), mesh, flows_in_rock(scene) ? darcy.mobility : isotropic);
   darcy.scheme = chosen.scheme;
   darcy.reason = chosen.reason;
   darcy.in_regions =
@@ -156,6 +159,10 @@ transport::FractureFlowParameters fracture_flow(const Scene& scene, const mesh::
                                               .outflow = darcy.outflow,
                                               .conditions = fluid_conditions(scene, mesh, true)};
   if (Mechanics::is_in(scene)) fractures.softness = mesh::largest_extent(mesh) / largest_modulus(scene, mesh);
+  if (!flows_in_rock(scene)) {
+    fractures.alone = {.initial = darcy.initial};
+    if (Mechanics::is_in(scene)) fractures.alone->row = {{"displacement", mesh::typical_face_area(mesh), true}};
+  }
   fractures.cut_by.resize(mesh.fracture_names.size());
   for (std::size_t k = 0; k < mesh.fracture_names.size(); ++k) {
     const auto& fracture = scene.fractures.at(mesh.fracture_names[k]);
@@ -215,7 +222,21 @@ bool has_fluid(const Scene& scene) { return scene.flow || scene.host_fluid; }
 
 bool has_unknown_pressure(const Scene& scene) { return scene.flow || (scene.host_fluid && scene.host_fluid->unknown); }
 
-bool Flow::needs_facets(const Scene& scene) { return has_unknown_pressure(scene); }
+bool flows_in_rock(const Scene& scene) {
+  const auto is_impermeable = [&](const std::string& name) {
+    const auto rock = scene.materials.find(name);
+    return rock != scene.materials.end() && rock->second.is_impermeable();
+  };
+  return !scene.flow || !(is_impermeable(scene.bulk.material) ||
+                          std::any_of(scene.regions.begin(), scene.regions.end(), [&](const auto& region) {
+                            return region.second.material && is_impermeable(*region.second.material);
+                          }));
+}
+
+Facets Flow::needs_facets(const Scene& scene) {
+  if (!has_unknown_pressure(scene)) return Facets::none;
+  return flows_in_rock(scene) ? Facets::all : Facets::of_fractures;
+}
 
 bool Flow::Rates::exist(const Scene& scene) { return has_fluid(scene); }
 
@@ -257,6 +278,27 @@ transport::SchemeEntry scheme_entry(const Scene& scene) {
   return {.section = "Flow", .name = scene.flow ? scene.flow->scheme : "auto", .property = "permeability"};
 }
 
+namespace {
+
+/// Adds flow and storage in rock. Collective.
+void add_rock(const Setting& setting, transport::HybridDiffusionParameters darcy, Modules& modules) {
+  const auto& mesh = setting.mesh;
+  transport::StorageParameters storage{.name = "fluid storage",
+                                       .field = "pressure",
+                                       .capacity = capacities(setting, darcy.fluid.compressibility),
+                                       .fluid = darcy.fluid,
+                                       .initial = setting.scene.flow->initial_pressure,
+                                       .change = darcy.change};
+  const bool denser = darcy.fluid.compressibility > 0 || darcy.change;
+  modules.push_back(transport::make_hybrid_diffusion(mesh.shape, std::move(darcy)));
+  const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
+                                  [&](const auto& of) { return of.growth > 0 || (denser && of.room > 0); });
+  if (base::on_any_rank(*mesh.comm, stores))  // values are those of local cells
+    modules.push_back(transport::make_storage(std::move(storage)));
+}
+
+}  // namespace
+
 void Flow::add_modules(const Setting& setting, Modules& modules) {
   const auto& scene = setting.scene;
   const auto& mesh = setting.mesh;
@@ -282,16 +324,9 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
                                                            stored(carried.stored_in_fractures)));
   }
   if (!flow.wells.empty()) modules.push_back(transport::make_wells(std::move(wells)));
-  modules.push_back(transport::make_hybrid_diffusion(mesh.shape, std::move(darcy)));
-  transport::StorageParameters storage{
-      .name = "fluid storage", .field = "pressure", .fluid = fluid, .initial = flow.initial_pressure, .change = change};
-  storage.capacity = capacities(setting, fluid.compressibility);
-  const bool denser = fluid.compressibility > 0 || change;
-  const bool stores = std::any_of(storage.capacity.values.begin(), storage.capacity.values.end(),
-                                  [&](const auto& of) { return of.growth > 0 || (denser && of.room > 0); });
-  if (base::on_any_rank(*mesh.comm, stores))  // values are those of local cells
-    modules.push_back(transport::make_storage(std::move(storage)));
+  if (flows_in_rock(scene)) add_rock(setting, std::move(darcy), modules);
   if (mesh.fracture_names.empty()) return;
+  const bool denser = fluid.compressibility > 0 || change;
   modules.push_back(transport::make_fracture_flow(mesh.shape, std::move(fractures)));
   if (denser || deforms) modules.push_back(transport::make_fracture_storage(std::move(in_fractures)));
 }
@@ -379,8 +414,9 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene)) return {};
   std::vector<std::string> all;
-  if (const auto skew = transport::scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh)); !skew.empty())
-    all.push_back(scene.origin + ": " + skew);
+  if (flows_in_rock(scene))
+    if (const auto skew = transport::scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh)); !skew.empty())
+      all.push_back(scene.origin + ": " + skew);
   add_closure_warnings(setting, all);
   add_well_warnings(setting, all);
   return all;

@@ -47,13 +47,14 @@ struct HostFluid {
 
 struct Flow : Physics<Flow> {
   struct Rock : Physics::Rock {
-    std::vector<base::Expression> permeability;  ///< one value, or tensor components; functions of x, y, z
+    std::vector<base::Expression> permeability;  ///< one value, or tensor components; functions of x, y, z; 0: none
     base::Expression porosity = 0;
     /// Compressibility of the pores; Biot's modulus. At most one is given.
     std::optional<Real> compressibility, biot_modulus;
     void describe(base::Section& section);
     void check(base::Section& section) const;
     bool flows_uniformly() const;  ///< the permeability is independent of the position
+    bool is_impermeable() const;   ///< the permeability is 0 everywhere
     /// Mobility k/mu. Throws an Error if k is not a positive definite tensor of dimension `dim`.
     laws::Mobility mobility(int dim, Real viscosity, const std::array<Real, 3>& x) const;
     /// Storage capacity of the pores at constant strain, for the fluid compressibility `of_fluid`, 1/Pa. Throws an
@@ -108,7 +109,7 @@ struct Flow : Physics<Flow> {
 
   static bool is_in(const Scene& scene);
   static std::vector<std::string> fixed_entries() { return {"initial pressure"}; }
-  static bool needs_facets(const Scene& scene);
+  static Facets needs_facets(const Scene& scene);
   static bool has_initial_state(const Scene& scene);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
@@ -134,6 +135,8 @@ struct Flow : Physics<Flow> {
 
 /// Returns whether the scene has a fluid: Flow, or the fluid of a host.
 bool has_fluid(const Scene& scene);
+/// Returns whether fluid flows in the rock: with Flow, the permeability is not 0.
+bool flows_in_rock(const Scene& scene);
 /// Returns whether the fluid pressure is an unknown.
 bool has_unknown_pressure(const Scene& scene);
 /// Initial pressure of the fluid in rock and fractures, Pa; 0 without a fluid.

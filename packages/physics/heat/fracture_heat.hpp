@@ -29,7 +29,7 @@ struct FractureHeatParameters {
   base::Expression initial_pressure = 0;              ///< initial pressure with a fluid, Pa
   Real expansion = 0;                                 ///< volumetric, 1/K, of a fluid whose flow does not depend on T
   std::optional<transport::FluidChange> change = {};  ///< effect of T on the fluid
-  bool widens = false;                                ///< adds "widening" of PoroelasticCoupling to the aperture
+  bool widens = false;                                ///< adds "widening" of FractureOpening to the aperture
 };
 
 /// Creates the module. For a fracture face F of area A, and for each of its ridges i, the rows of "face temperature"

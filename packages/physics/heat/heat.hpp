@@ -75,7 +75,7 @@ struct Heat : Physics<Heat> {
 
   static bool is_in(const Scene& scene);
   static std::vector<std::string> fixed_entries() { return {"initial temperature", "thermal expansion"}; }
-  static bool needs_facets(const Scene& scene) { return is_in(scene); }
+  static Facets needs_facets(const Scene& scene) { return is_in(scene) ? Facets::all : Facets::none; }
   static bool has_initial_state(const Scene& scene);
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);

@@ -174,7 +174,8 @@ bool has_tips(const mesh::Mesh& mesh) {
 bool has_solid_pressure(const Scene& scene, int order) {
   bool alone = true;
   for_each_physics([&](auto physics) {
-    if constexpr (!std::is_same_v<decltype(physics), Mechanics>) alone = alone && !physics.needs_facets(scene);
+    if constexpr (!std::is_same_v<decltype(physics), Mechanics>)
+      alone = alone && physics.needs_facets(scene) == Facets::none;
   });
   const auto needs = [&](const std::string& name) {
     const auto rock = scene.materials.find(name);
@@ -196,7 +197,9 @@ Real usual_augmentation() { return ElasticPlasticJumpParameters().augmentation; 
 
 bool Mechanics::is_in(const Scene& scene) { return !scene.bulk.rigid && !(scene.flow && scene.flow->rigid_rock); }
 
-bool Mechanics::needs_facets(const Scene& scene) { return is_in(scene) && has_solid_pressure(scene); }
+Facets Mechanics::needs_facets(const Scene& scene) {
+  return is_in(scene) && has_solid_pressure(scene) ? Facets::all : Facets::none;
+}
 
 fields::Properties<laws::Elasticity> elasticity(const Scene& scene, const mesh::Mesh& mesh) {
   return by_cell(

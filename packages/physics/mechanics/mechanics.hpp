@@ -107,7 +107,7 @@ struct Mechanics : Physics<Mechanics> {
   };
 
   static bool is_in(const Scene& scene);
-  static bool needs_facets(const Scene& scene);
+  static Facets needs_facets(const Scene& scene);
   static std::vector<std::string> fixed_entries();
   static void compare(Comparison& comparison);
   static void compare_mesh(Comparison& comparison, const mesh::GlobalMesh& mesh);

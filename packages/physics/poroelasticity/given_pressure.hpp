@@ -15,8 +15,8 @@ struct GivenPressureParameters {
 };
 
 /// Module of a prescribed pressure. It adds -p_K dV_K/du - p_f dW_f/du to the rows of all displacements, with V_K and
-/// W_f of PoroelasticCoupling. p is the pressure minus that of the initial state. Outputs of the present state: "gained
-/// pore volume" V_K (cells, m^3; 2D: m^2) and "widening" W_f/|f| (fracture faces, m).
+/// of PoroelasticCoupling and W_f of FractureOpening. p is the pressure minus that of the initial state. Outputs of the
+/// present state: "gained pore volume" V_K (cells, m^3; 2D: m^2) and "widening" W_f/|f| (fracture faces, m).
 class GivenPressure : public assembly::Module {
  public:
   /// Pressure of the initial state, Pa.

@@ -12,40 +12,8 @@
 namespace sprekk::physics {
 
 using assembly::Loop;
-using assembly::Slot;
 
 namespace {
-
-/// Fluid pressure on one side of a fracture face, and the contribution of this side to the widening of the face.
-///
-/// | symbol    | shape                       | unit     |                                                     |
-/// | x         | displacements [m], p, b     | m, Pa, m | unknowns                                            |
-/// | r         | forces [m], row of b        | N, m^3 (2D: m^2) | -p dW/du, share |f| b - W                   |
-/// | volume    | [entity, m]                 | m^2      | dW/du                                               |
-/// | part      | [entity]                    | m^2      | share |f|                                           |
-template <class... Displacements>
-struct Opening {
-  using Columns = assembly::Slots<Displacements..., Slot<1, 1>, Slot<1, 1>>;
-  using Rows = assembly::Slots<Displacements..., Slot<1, 1>>;
-  static constexpr int m = Rows::size - 1, last = sizeof...(Displacements);
-  static constexpr bool couples(int row, int column) { return (row == last) != (column == last); }
-  View<Real**> volume;
-  ConstView<Real*> part;
-
-  KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[m + 2], Real (&r)[m + 1]) const {
-    r[m] = part(e) * x[m + 1];
-    for (int k = 0; k < m; ++k) {
-      r[k] = -volume(e, k) * x[m];
-      r[m] -= volume(e, k) * x[k];
-    }
-  }
-  KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&)[m + 2], Real (&J)[m + 1][m + 2]) const {
-    for (auto& row : J)
-      for (Real& value : row) value = 0;
-    J[m][m + 1] = part(e);
-    for (int k = 0; k < m; ++k) J[k][m] = J[m][k] = -volume(e, k);
-  }
-};
 
 class PoroelasticCoupling final : public assembly::Module,
                                   public assembly::InitialValues,
@@ -54,10 +22,7 @@ class PoroelasticCoupling final : public assembly::Module,
                                   public assembly::RowWeights,
                                   public assembly::ArtificialStorage {
  public:
-  PoroelasticCoupling(const mesh::Mesh& mesh, PoroelasticCouplingParameters parameters)
-      : parameters_(std::move(parameters)),
-        fractures_(!mesh.fracture_names.empty()),
-        tips_(mesh.n_global_enriched > 0) {}
+  explicit PoroelasticCoupling(PoroelasticCouplingParameters parameters) : parameters_(std::move(parameters)) {}
 
   std::string name() const override { return "poroelastic coupling"; }
   std::string fingerprint() const override { return parameters_.stabilisation.initial.text(); }
@@ -69,19 +34,6 @@ class PoroelasticCoupling final : public assembly::Module,
       d.couplings.push_back({part.loop, part.field, {"pressure"}});
       d.couplings.push_back({part.loop, "pressure", {part.field}});
     }
-    const auto open = [&](Loop loop, const char* displacement) {
-      d.couplings.push_back({loop, displacement, {"face pressure"}});
-      d.couplings.push_back({loop, "widening", {displacement, "widening"}});
-    };
-    if (fractures_) {
-      assembly::Unknown widening{
-          {"widening", fields::Entity::fracture_face, 1, "m"}, "displacement", {{"displacement", area}}};
-      widening.local_group = "fracture face";
-      d.unknowns = {widening};
-      open(Loop::fracture_sides, "displacement");
-      open(Loop::fracture_sides, "side bubble");
-    }
-    if (tips_) open(Loop::tip_sides, "tip displacement");
     for (const char* row : {"pressure", "face pressure"}) {
       d.couplings.push_back({Loop::cells, row, {"pressure", "face pressure"}});
       d.sizes.push_back({row, {"displacement", area, true}});
@@ -96,7 +48,6 @@ class PoroelasticCoupling final : public assembly::Module,
   void bind(const assembly::Context& context) override;
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     for (const auto& term : rates_) term.add_residual(state, r);
-    for (const auto& term : openings_) term.add_residual(state, r);
     for (int k = 0; k < 2; ++k) {
       const auto rows = r[pressures_[k]];
       const auto old = state.history[k];
@@ -153,16 +104,13 @@ class PoroelasticCoupling final : public assembly::Module,
   Real biot(LocalIndex cell) const { return parameters_.biot.of_cell(*mesh_, cell); }
 
   void add_stabilisation(const assembly::Context& context);
-  void add_sides(const assembly::Context& context);
-  void add_tips(const assembly::Context& context);
 
   PoroelasticCouplingParameters parameters_;
-  bool fractures_, tips_;  // the mesh has fractures; enriched tips
   RCP<const mesh::Mesh> mesh_;
-  std::array<int, 2> pressures_{};  // blocks of pressure, face pressure
-  ConstView<Real*> schur_;          // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: Schur complement (fixed stress)
-  std::vector<assembly::Term> rates_, openings_;  // rates_ are proportional to the rate of the state
-  assembly::Term stabilisation_;                  // contained in rates_
+  std::array<int, 2> pressures_{};     // blocks of pressure, face pressure
+  ConstView<Real*> schur_;             // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: Schur complement (fixed stress)
+  std::vector<assembly::Term> rates_;  // proportional to the rate of the state
+  assembly::Term stabilisation_;       // contained in rates_
 };
 
 void PoroelasticCoupling::bind(const assembly::Context& context) {
@@ -182,13 +130,10 @@ void PoroelasticCoupling::bind(const assembly::Context& context) {
                                                 true));
     if (part.loop == Loop::cells) add_stabilisation(context);
   }
-  if (fractures_) add_sides(context);
-  if (tips_) add_tips(context);
 }
 
 void PoroelasticCoupling::jacobian(const assembly::State& state, fields::BlockMatrix& J) const {
   for (const auto& term : rates_) term.add_jacobian(state, J);
-  for (const auto& term : openings_) term.add_jacobian(state, J);
 }
 
 void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
@@ -205,35 +150,10 @@ void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
   rates_.push_back(stabilisation_);
 }
 
-void PoroelasticCoupling::add_sides(const assembly::Context& context) {
-  const int u = context.field("displacement"), beta = context.field("side bubble"), b = context.field("widening");
-  std::vector<Real> halves;
-  for (const auto& [f, side] : assembly::fracture_sides(*mesh_)) halves.push_back(mesh_->fracture_faces[f].area / 2);
-  openings_.push_back(mesh::for_shape(mesh_->shape, [&](auto shape) {
-    constexpr int dim = mesh::dimension(shape());
-    const Opening<Slot<mesh::n_nodes(shape()), dim>, Slot<1, dim>> op{assembly::side_volumes(*mesh_),
-                                                                      assembly::to_device(halves, "half of the area")};
-    return assembly::Term(context, Loop::fracture_sides, {u, beta, b}, {u, beta, pressures_[1], b}, true,
-                          [op](const assembly::State&) { return op; });
-  }));
-}
-
-void PoroelasticCoupling::add_tips(const assembly::Context& context) {
-  const int q = context.field("tip displacement"), b = context.field("widening");
-  const auto of_sides = assembly::tip_side_volumes(*mesh_);
-  const auto part = assembly::to_device(std::vector<Real>(of_sides.extent(0), 0), "none of the area");
-  openings_.push_back(mesh::for_corners(mesh_->shape, [&](auto shape) {
-    const Opening<Slot<mesh::n_nodes(shape()), mesh::dimension(shape())>> op{of_sides, part};
-    return assembly::Term(context, Loop::tip_sides, {q, b}, {q, pressures_[1], b}, true,
-                          [op](const assembly::State&) { return op; });
-  }));
-}
-
 }  // namespace
 
-std::unique_ptr<assembly::Module> make_poroelastic_coupling(const mesh::Mesh& mesh,
-                                                            PoroelasticCouplingParameters parameters) {
-  return std::make_unique<PoroelasticCoupling>(mesh, std::move(parameters));
+std::unique_ptr<assembly::Module> make_poroelastic_coupling(PoroelasticCouplingParameters parameters) {
+  return std::make_unique<PoroelasticCoupling>(std::move(parameters));
 }
 
 }  // namespace sprekk::physics

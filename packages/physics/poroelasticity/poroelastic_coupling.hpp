@@ -16,15 +16,11 @@ struct PoroelasticCouplingParameters {
 };
 
 /// Creates the module that couples "displacement" (with "side bubble" and "tip displacement" if present) to "pressure"
-/// and "face pressure" of HybridDiffusion. It declares the unknown "widening" b (fracture faces, m): the aperture (15)
-/// minus that of the initial state. V_K(u) is the integral of alpha div u over a cell K.
-/// W_f(u) = |f| n . mean([[u]]) belongs to a fracture face. Rows:
-///   momentum      -(p_K - p_0) dV_K/du - p_f dW_f/du
-///   "widening"    |f| b - W_f(u)
+/// of HybridDiffusion. V_K(u) is the integral of alpha div u over a cell K. Rows:
+///   momentum      -(p_K - p_0) dV_K/du
 ///   "pressure"    (V_K(u) - V_K(u_old))/dt              implicit Euler, m^3/s (2D: m^2/s)
-/// On the sides of a fracture acts the traction lambda - p_f n, Wollmann (2024), (6), (7). The rows of pressures also
-/// receive the flow of Stabilisation. make_fracture_storage() adds the storage of fractures.
-std::unique_ptr<assembly::Module> make_poroelastic_coupling(const mesh::Mesh& mesh,
-                                                            PoroelasticCouplingParameters parameters);
+/// The rows of pressures also receive the flow of Stabilisation. make_fracture_opening() adds the coupling in
+/// fractures.
+std::unique_ptr<assembly::Module> make_poroelastic_coupling(PoroelasticCouplingParameters parameters);
 
 }  // namespace sprekk::physics

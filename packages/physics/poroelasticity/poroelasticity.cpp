@@ -3,6 +3,7 @@
 #include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
+#include "physics/poroelasticity/fracture_opening.hpp"
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 #include "physics/scene.hpp"
 
@@ -21,10 +22,6 @@ fields::Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
         [](const Material& rock, const auto& x) { return value_at(biot_name, rock.biot, base::between(0, 1), x); });
   });
   return values;
-}
-
-std::unique_ptr<assembly::Module> make_coupling(const Scene& scene, const mesh::Mesh& mesh) {
-  return make_poroelastic_coupling(mesh, {.biot = biot(scene, mesh), .stabilisation = stabilisation(scene, mesh)});
 }
 
 /// Creates the module of a pressure prescribed by the host.
@@ -61,14 +58,18 @@ bool Poroelasticity::is_in(const Scene& scene) { return Mechanics::is_in(scene) 
 
 void Poroelasticity::add_modules(const Setting& setting, Modules& modules) {
   const auto& [scene, mesh, start] = setting;
-  if (is_in(scene))
-    modules.push_back(has_unknown_pressure(scene) ? make_coupling(scene, mesh) : make_given(scene, mesh));
+  if (!is_in(scene)) return;
+  if (!has_unknown_pressure(scene)) return modules.push_back(make_given(scene, mesh));
+  if (flows_in_rock(scene))
+    modules.push_back(
+        make_poroelastic_coupling({.biot = biot(scene, mesh), .stabilisation = stabilisation(scene, mesh)}));
+  if (!mesh.fracture_names.empty()) modules.push_back(make_fracture_opening(mesh));
 }
 
 std::vector<std::string> Poroelasticity::warnings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   std::vector<std::string> all;
-  if (!is_in(scene) || scene.host_fluid) return all;
+  if (!is_in(scene) || scene.host_fluid || !flows_in_rock(scene)) return all;
   for (const auto& [name, material] : scene.materials) {
     const auto is_low = [&, &rock = material](LocalIndex cell) {
       const auto x = mesh::cell_centre(mesh, cell);

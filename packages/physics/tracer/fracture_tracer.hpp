@@ -27,7 +27,7 @@ struct FractureTracerParameters {
   Real decay = 0;                         ///< decay constant, 1/s
   std::optional<laws::Fluid> fluid = {};  ///< flowing filling, with "face pressure"
   base::Expression initial_pressure = 0;  ///< initial pressure with a fluid, Pa
-  bool widens = false;                    ///< adds "widening" of PoroelasticCoupling to the aperture
+  bool widens = false;                    ///< adds "widening" of FractureOpening to the aperture
 };
 
 /// Creates the module. For a fracture face of area A, and for each of its ridges i, the rows of "face concentration"

@@ -68,7 +68,7 @@ struct Tracer : Physics<Tracer> {
 
   static bool is_in(const Scene& scene);
   static std::vector<std::string> fixed_entries() { return {"initial concentration"}; }
-  static bool needs_facets(const Scene& scene) { return is_in(scene); }
+  static Facets needs_facets(const Scene& scene) { return is_in(scene) ? Facets::all : Facets::none; }
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
