@@ -18,7 +18,7 @@ folder. A directory gives these pictures, if the run contains the data:
   probe_NAME.png   each probe
   convergence.png  iterations and residuals of all steps
 
-and, for fractures, the tables events.csv, fractures_long.csv and fractures_wide.csv."""
+and, for fractures, the tables fractures_long.csv and fractures_wide.csv."""
 import argparse
 import io
 import sys
@@ -117,18 +117,14 @@ def of_run(directory, options):
             yield "loops", loops.of_fractures(states, singles, name, *sizes, unloaded=loops.starts_unloaded(scene))
         else:
             left_out("loops.png", directory, "it contains one step, a loop requires two")
-    start = start_of(scene)
+    start = float(scene.get("Time", {}).get("start", 0))
     dim = content.get("mesh", {}).get("dimension", 3)
     made = [("series", series.of_run(states, singles, name, clock, start, dim)),
-            ("events", magnitudes.over_time(events.of_run(content, start), steps, name, clock, start, dim)),
+            ("events", magnitudes.over_time(events.of_run(directory, content), steps, name, clock, start, dim)),
             ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
     made += [(f"probe_{path.stem}", series.of_probe(path)) for path in sorted((directory / "probes").glob("*.csv"))]
     yield from ((picture, figure) for picture, figure in made if figure)
     yield "convergence", convergence.of_run(steps, name)
-
-
-def start_of(scene):
-    return float(scene.get("Time", {}).get("start", 0))
 
 
 def left_out(pictures, directory, why):
@@ -161,8 +157,7 @@ def pictures(path, options):
         made[f"{name}.png"] = picture.getvalue()
     if path.is_dir():
         import events
-        tables = events.tables(read.results(path), start_of(read.scene(path)))
-        made |= {name: table.encode() for name, table in tables.items()}
+        made |= {name: table.encode() for name, table in events.tables(read.results(path)).items()}
     return made
 
 

@@ -76,10 +76,12 @@ def quantities(data, length, stress):
             "shear traction": (without_noise(np.linalg.norm(traction[:, 1:], axis=1), stress), "Pa")}
 
 
-def face_states(data, length):
-    """Returns the index of FACE_STATES of each face; slip below the round-off of the length does not count."""
-    state, slipped = data["state"].astype(int), without_noise(data["slip"], length) > 0
-    return np.select([state == 0, state == 2, slipped], [0, 3, 2], 1)
+def face_states(data):
+    """Returns the index of FACE_STATES of each face. Error for results of earlier versions."""
+    if "has slipped" not in data:
+        raise read.PlotError('fractures.pvd: has no array "has slipped"; run the scene again')
+    state = data["state"].astype(int)
+    return np.select([state == 0, state == 2, data["has slipped"] > 0], [0, 3, 2], 1)
 
 
 ROWS = {"tangential jump": ("tangential jump", "slip"), "opening": ("opening",),
@@ -193,7 +195,7 @@ def along(surface, names, title, length, stress, singles=()):
             ax.tick_params(labelbottom=False, labelleft=k % columns == 0)
             ax.set_ylabel(quantity.label if k % columns == 0 else "")
             ax.yaxis.set_label_coords(-0.5 / 3.6, 0.5)
-        draw_states(column[-1], traces[number], face_states(surface.cell_data, length), k % columns == 0)
+        draw_states(column[-1], traces[number], face_states(surface.cell_data), k % columns == 0)
         if len(traces[number]) > 1:
             legend_of_traces(column[0], traces[number])
         for ax, row in zip(column, ROWS.values()):
@@ -219,7 +221,7 @@ def on_faces(view, title, length, stress):
         view.draw(ax, palette(norm(quantity(values))))
         colour_bar(figure, ax, norm, palette, quantity.label, **bar)
     norm = state_bar(figure, axes[-1, -1], **bar)
-    view.draw(axes[-1, -1], FACE_COLOURS(norm(face_states(view.data, length))))
+    view.draw(axes[-1, -1], FACE_COLOURS(norm(face_states(view.data))))
     view.write_names(axes[-1, -1])
     return figure
 

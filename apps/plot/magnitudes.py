@@ -4,7 +4,7 @@ import numpy as np
 import series
 from events import column, increments, states
 from matplotlib import patheffects
-from style import FAINT, LINES, STYLES, foremost, plt
+from style import FAINT, LINES, NOISE, STYLES, foremost, plt
 
 FEWEST = 20  # smallest number of fractures with a magnitude
 FEWEST_OF_SLOPE = 50  # smallest number above the magnitude of completeness, for a b-value
@@ -109,7 +109,7 @@ def over_time(events, steps, title, wanted=None, start=0.0, dim=3):
     figure.suptitle(f"{title}, {len(events)} slip events", fontsize=10, x=0.01, ha="left")
     low = np.floor(2 * np.min(magnitudes) - 0.5) / 2
     ax.hlines(magnitudes, starts, ends, color=FAINT, linewidth=0.8)
-    goes_on = ends >= times[-1]
+    goes_on = times[-1] - ends <= NOISE * np.ptp(times)
     for chosen, face, label in (
         (~goes_on, LINES[3], "event"),
         (goes_on, "white", "event that goes on at the end of the run"),

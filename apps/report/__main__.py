@@ -47,7 +47,8 @@ def pictures(directory, dpi):
             raise PlotError(said)
         files = [Path(line) for line in done.stdout.splitlines()]
         drawn = [(file.stem, file.read_bytes()) for file in files if file.suffix == ".png"]
-        return drawn, [(file.name, file.read_text()) for file in files if file.suffix == ".csv"], said
+        tables = [directory / "events.csv", *(file for file in files if file.suffix == ".csv")]
+        return drawn, [(file.name, file.read_text()) for file in tables if file.is_file()], said
 
 
 def report(options):
@@ -68,11 +69,10 @@ def report(options):
     content = read.results(directory)
     dim = content.get("mesh", {}).get("dimension", 3)
     entries = scene.Scene(directory, ROOT / "docs/use/reference.md", dim)
-    start = float(entries.entries.get("Time", {}).get("start", 0))
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
     with ThreadPoolExecutor() as pool:  # the pictures are drawn by another process
         drawing = pool.submit(pictures, directory, options.dpi)
-        found = events.of_run(content, start)
+        found = events.of_run(directory, content)
         shown = view.of_run(directory, content, entries.entries, found, progress) if viewer else None
         progress("pictures")
         drawn, tables, left_out = drawing.result()
@@ -81,7 +81,7 @@ def report(options):
         content,
         entries,
         checks.of_run(directory, content, entries),
-        figures.of_run(content, entries.reference, start),
+        figures.of_run(content, entries.reference, found),
         tables,
         drawn,
         left_out,

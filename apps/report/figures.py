@@ -2,7 +2,6 @@
 
 from collections import namedtuple
 
-import events
 import numpy as np
 from numbers_in_words import RATES, in_unit, number, quantity, unit_of
 
@@ -14,6 +13,7 @@ OF_FRACTURES = [
     ("area", "area", "m²"),
     ("first_slip", "first slip at", "s"),
     ("fraction_slip", "slipping at the end", ""),
+    ("fraction_has_slipped", "has slipped", ""),
     ("fraction_open", "open at the end", ""),
     ("mean_slip", "mean slip", "m"),
     ("max_slip", "largest slip", "m"),
@@ -160,11 +160,11 @@ def of_events(found, dim):
     yield Table("Slip events", [title for title, _ in columns], list(zip(*(values for _, values in columns))), others)
 
 
-def of_run(content, reference, start=0.0):
-    """Returns the tables of results and the tables of costs. `reference`: units of entries, scene.Reference."""
+def of_run(content, reference, found):
+    """Returns the tables of results and the tables of costs. `reference`: units of entries, scene.Reference. `found` are
+    the slip events of the run."""
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
-    found = events.of_run(content, start)
     fractures = singles(content, last, found) or last.get("fractures", {})
     tables = [
         *of_fractures(fractures, dim),

@@ -86,7 +86,7 @@ def fracture_fields(data, sizes):
             found[name] = Field(*values[name], PALETTES.get(name, "cividis"), signed=name == "opening")
         tendency = np.minimum(maps.slip_tendency(data, sizes[1]), maps.LARGEST_TENDENCY)
         found["shear traction / normal compression"] = Field(tendency, "", "plasma")
-        found["contact state"] = Field(fractures.face_states(data, sizes[0]).astype(float), "state", "")
+        found["contact state"] = Field(fractures.face_states(data).astype(float), "state", "")
     for name, unit in (("fracture pressure", "Pa"), ("hydraulic aperture", "m")):
         if name in data:
             found[name] = Field(data[name], unit, "viridis")

@@ -94,6 +94,13 @@ struct Derived {
   std::function<std::optional<Real>(const std::vector<Real>&)> of;
 };
 
+/// Events of an integral: intervals in which it changes, listed in events.csv with the change of a mean and a number
+/// derived from the change of the integral.
+struct Events {
+  std::string mean;  ///< name of a Summary with a mean
+  Derived derived;
+};
+
 /// Entry of an output on fracture faces in results.json, for each fracture.
 /// - mean, mean_and_max: area mean "mean_NAME" (vectors: in the named frame), and the largest value "max_NAME"
 /// - fractions: area "area_CLASS" and area fraction "fraction_CLASS" of the faces in state 0, 1, ...
@@ -105,9 +112,10 @@ struct Summary {
   Kind kind = none;
   std::string name = "";                  ///< spaces become underscores
   std::string frame = "";                 ///< for vectors
-  std::vector<std::string> classes = {};  ///< for fractions
+  std::vector<std::string> classes = {};  ///< for fractions; an empty name has no entry
   std::string unit = "";                  ///< for an integral
   std::vector<Derived> derived = {};      ///< from the mean or integral
+  std::optional<Events> events = {};      ///< for an integral
 };
 
 /// Output array on owned cells or faces, or on all local nodes: [entity * n_components + component]. Global

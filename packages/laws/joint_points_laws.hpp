@@ -131,7 +131,7 @@ template <int dim>
 KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end, const JointHistory& to) const {
   const auto& joint = law[number(f)];
   const auto& p = to.plastic_jump;
-  to.slid(f, 0) = end.state == ContactState::slip;
+  to.slid(f, 0) = end.state == ContactState::slip ? 1 : to.slid(f, 0) > 0 ? 2 : 0;
   if (end.state != ContactState::stick) {
     Real elastic[dim], plastic[dim];
     split_jump<dim>(joint, end.state, end.w, end.traction, end.p_old, elastic, plastic, history(f));

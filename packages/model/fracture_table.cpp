@@ -66,7 +66,7 @@ class Adder {
   void add(const OutputField& output) {
     const auto& reported = output.summary;
     for (std::size_t c = 0; c < reported.classes.size(); ++c)
-      add_class(output, static_cast<Real>(c), reported.classes[c]);
+      if (!reported.classes[c].empty()) add_class(output, static_cast<Real>(c), with_underscores(reported.classes[c]));
     if (reported.kind == Summary::none || reported.kind == Summary::fractions) return;
     const auto name = with_underscores(reported.name);
     if (reported.kind == Summary::error_bound) return add_maxima(output, "error_of_" + name);
@@ -75,8 +75,8 @@ class Adder {
     auto values = groups_.integrals(n, [&](LocalIndex f, int c) { return output.values[f * n + c]; });
     for (std::size_t i = 0; i < values.size() && is_mean; ++i) values[i] /= area_[i / n];
     for (const auto& derived : reported.derived) add_derived(derived, n, values);
-    columns_.push_back(
-        {is_mean ? "mean_" + name : name, reported.frame, is_mean ? output.unit : reported.unit, n, values});
+    columns_.push_back({is_mean ? "mean_" + name : name, reported.frame, is_mean ? output.unit : reported.unit, n,
+                        values, reported.events});
     if (reported.kind == Summary::mean_and_max) add_maxima(output, "max_" + name);
   }
 
@@ -187,11 +187,18 @@ json described_singles(const mesh::Mesh& mesh) {
   return all;
 }
 
+std::vector<Real> values_of(const json& list) {
+  std::vector<Real> values;
+  for (const auto& value : list) values.push_back(value.is_null() ? missing : value.get<Real>());
+  return values;
+}
+
+std::string csv_cell(std::string text) {
+  for (auto at = text.find('"'); at != text.npos; at = text.find('"', at + 2)) text.insert(at, 1, '"');
+  return text.find_first_of(",\"\n") == text.npos ? text : '"' + text + '"';
+}
+
 std::string to_csv(const json& described, const std::vector<FractureColumn>& columns) {
-  const auto quoted = [](std::string text) {
-    for (auto at = text.find('"'); at != text.npos; at = text.find('"', at + 2)) text.insert(at, 1, '"');
-    return text.find_first_of(",\"\n") == text.npos ? text : '"' + text + '"';
-  };
   const std::vector<std::pair<const char*, const char*>> known = {{"strike", "degree"}, {"dip", "degree"}};
   const auto is_described = [&](const char* entry) { return !described.empty() && described[0].contains(entry); };
   /// Areas in 2D are lengths.
@@ -216,7 +223,7 @@ std::string to_csv(const json& described, const std::vector<FractureColumn>& col
                           column.unit);
   text += '\n';
   for (std::size_t k = 0; k < described.size(); ++k) {
-    text += quoted(described[k]["name"]) + ',' + quoted(described[k]["set"]);
+    text += csv_cell(described[k]["name"]) + ',' + csv_cell(described[k]["set"]);
     for (const auto& [entry, unit] : known)
       if (is_described(entry)) fmt::format_to(std::back_inserter(text), ",{}", described[k][entry].get<Real>());
     for (std::size_t i = 0; i < columns.size(); ++i)
@@ -239,8 +246,9 @@ std::vector<std::string> digest(const json& described, const std::vector<Fractur
       if (column.values[k] > 0) found.emplace_back(-column.values[k], k);
     std::sort(found.begin(), found.end());
     constexpr std::size_t reported = 12;
-    auto line =
-        fmt::format("{} on {} of {} fractures", column.name.substr(prefix.size()), found.size(), described.size());
+    auto state = column.name.substr(prefix.size());
+    std::replace(state.begin(), state.end(), '_', ' ');
+    auto line = fmt::format("{} on {} of {} fractures", state, found.size(), described.size());
     for (std::size_t i = 0; i < std::min(reported, found.size()); ++i)
       line += fmt::format("{} \"{}\" ({:.3g} %{})", i == 0 ? ":" : ",",
                           described[found[i].second]["name"].get<std::string>(), -100 * found[i].first,

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct FractureColumn {
   std::string name, frame, unit;  ///< frame: "global" or "local" for vectors, else empty
   int n_components = 1;
   std::vector<Real> values = {};  ///< [group * n_components + component]; NaN if undefined
+  std::optional<assembly::Events> events = {};
 
   /// Number or vector of a group.
   nlohmann::json of(std::size_t group) const;
@@ -41,12 +43,17 @@ nlohmann::json units(const std::vector<FractureColumn>& columns);
 /// degrees. Collective.
 nlohmann::json described_singles(const mesh::Mesh& mesh);
 
+/// Returns the numbers of a list in results.json; null becomes NaN.
+std::vector<Real> values_of(const nlohmann::json& list);
+/// Returns a text as a cell of a CSV table, with quotation marks if necessary.
+std::string csv_cell(std::string text);
+
 /// Writes the table of single fractures as CSV text: one line per fracture, with the entries of described_singles() and
 /// the columns. Column titles contain units; areas in 2D have the title `length`. Values below 1e-14 of the largest of
 /// their column are written as 0.
 std::string to_csv(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 
-/// Returns one line per contact state, `open on 2 of 12 fractures: "a" (100 % of its area), "b" (35 %)`. Fractures are
+/// Returns one line per class of faces, `open on 2 of 12 fractures: "a" (100 % of its area), "b" (35 %)`. Fractures are
 /// ordered by their share of the area in this state, largest first.
 std::vector<std::string> digest(const nlohmann::json& described, const std::vector<FractureColumn>& columns);
 

@@ -4,6 +4,7 @@
 #include "base/units.hpp"
 #include "base/xml.hpp"
 #include "io/json.hpp"
+#include "model/events.hpp"
 #include "model/fracture_table.hpp"
 #include "model/json_keys.hpp"
 
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 
 namespace sprekk::model {
 
@@ -32,11 +32,13 @@ void remove_oscillating(const std::string& directory) {
     std::filesystem::remove_all(directory + '/' + oscillating_name + end, ignored);
 }
 
-/// Removes tables of a previous run, of fractures unless the run is continued; ignores failures. Not collective.
+/// Removes tables and lists of written steps of a previous run. If the run is continued, only the tables of probes are
+/// removed. Ignores failures. Not collective.
 void remove_tables(const std::string& directory, bool goes_on) {
   std::error_code ignored;
   std::filesystem::remove(directory + "/probes.h5", ignored);
-  if (!goes_on) std::filesystem::remove(directory + "/fractures.csv", ignored);
+  for (const char* name : {"fractures.csv", "events.csv", "bulk.pvd", "fractures.pvd"})
+    if (!goes_on) std::filesystem::remove(directory + '/' + name, ignored);
   const std::filesystem::path probes = directory + "/probes";
   for (const auto& entry : std::filesystem::directory_iterator(probes, ignored))
     if (entry.path().extension() == ".csv") std::filesystem::remove(entry.path(), ignored);
@@ -66,14 +68,6 @@ std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractu
   for (std::size_t k = 0; k < faces.size(); ++k)
     blocks.push_back({mesh.fracture_names[k], io::part_of(fractures, faces[k])});
   return blocks;
-}
-
-/// Numbers of a table in a journal; null is a missing number.
-std::vector<Real> values_of(const json& table) {
-  std::vector<Real> values;
-  for (const auto& value : table)
-    values.push_back(value.is_null() ? std::numeric_limits<Real>::quiet_NaN() : value.get<Real>());
-  return values;
 }
 
 /// Returns the first row, or null without rows.
@@ -455,8 +449,10 @@ void Results::write_json() {
   io::write_json(comm, directory_ + "/results.json", json_);
   if (series_) series_->write_all();
   base::collectively(comm, [&] {
-    if (comm.getRank() == 0 && !singles_.empty())
-      io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
+    if (comm.getRank() != 0 || singles_.empty()) return;
+    io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
+    const auto events = events_csv(json_, singles_, model_.setting().start);
+    if (!events.empty()) io::write_file(directory_ + "/events.csv", events);
   });
   n_written_ = static_cast<int>(json_["steps"].size());
   last_write_ = std::chrono::steady_clock::now();

@@ -5,7 +5,7 @@ import numpy as np
 
 LENGTHS = ("displacement", "jump", "opening", "slip", "widening")
 STRESSES = ("stress", "traction", "largest compression")
-LEFT_OUT = ("rank", "material", "fracture", "single fracture", "state", "mobilised strength", "error of damage history")
+LEFT_OUT = ("rank", "material", "fracture", "single fracture", "state", "has slipped", "mobilised strength", "error of damage history")
 ROUNDING, ALLOWED = 1e-14, 1e-8  # round-off relative to the level of pressure and temperature; allowed difference
 NEAR = 1e-9  # distance from the limit between two contact states, within which either state is accepted
 

@@ -26,8 +26,9 @@ class Log(ProgramTest):
             self.assertEqual(lines[1], "mesh: 4 cells, 12 nodes, 2 fracture faces")
             self.assertEqual(sum("24 unknowns" in line for line in lines), 1, out)
             self.assertEqual([step[1] for step in STEP.finditer(out)], list("12345678"))
-            self.assertEqual(lines[-4:], ["open on 0 of 1 fractures", 'stick on 1 of 1 fractures: "fracture" (100 % of its area)',
-                                          "slip on 0 of 1 fractures", "results in out"])
+            self.assertEqual(lines[-5:], ["open on 0 of 1 fractures", 'stick on 1 of 1 fractures: "fracture" (100 % of its area)',
+                                          "slip on 0 of 1 fractures", 'has slipped on 1 of 1 fractures: "fracture" (100 % of its area)',
+                                          "results in out"])
             self.assertEqual(len(lines), len(set(lines)), out)
 
     def test_quiet(self):

@@ -68,7 +68,7 @@ class Fractures(PlotTest):
         state = np.ones(2 * n)
         state[-4:-2] = 2
         jump = np.repeat(np.arange(n), 2)[:, None] * [0.0, 1e-3]
-        data = {"fracture": np.zeros(2 * n), "state": state, "jump": jump, "jump local": jump, "slip": jump[:, 1], "opening": jump[:, 0],
+        data = {"fracture": np.zeros(2 * n), "state": state, "has slipped": np.arange(2 * n) > 1, "jump": jump, "jump local": jump, "slip": jump[:, 1], "opening": jump[:, 0],
                 "traction": jump - [1e6, 0], "traction local": jump - [1e6, 0]}
         return read.Surface(points, faces, data, {})
 

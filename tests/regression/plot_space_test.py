@@ -23,36 +23,22 @@ SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 CUBE = np.concatenate([SQUARE, SQUARE + [0, 0, 1]])
 
 
-def run(times, *moments):
-    """Returns the results of fractures with these moments; the mean slip is 1e-9 m per N m."""
-    lists = [{"moment": list(now), "mean_slip": [1e-9 * m for m in now]} for now in zip(*moments)]
-    return {
-        "single_fractures": [{"name": name} for name in "abc"[: len(moments)]],
-        "steps": [{"time": t, "single_fractures": one} for t, one in zip(times, lists)],
-        "units": {"moment": "N*m"},
-    }
+def event(start, end, moment):
+    """Returns an event of fracture a with a slip of 1e-9 m per N m."""
+    return events.Event("a", start, end, 1e-9 * moment, moment, (np.log10(moment) - 9.1) / 1.5, moment)
 
 
 class Events(PlotTest):
-    def test_events_of_known_moments(self):
-        """Steps in sequence are one event. Reverse slip counts. A fracture with round-off has no event."""
-        content = run((1, 2, 3, 4, 5), (0, 1e9, 1e9, 2e9, 4e9), (0, 3e9, 0, 0, 0), (0, 1e-3, 2e-3, 3e-3, 4e-3))
-        found = events.of_run(content)
-        self.assertEqual(
-            [(event.fracture, event.start, event.end) for event in found], [("a", 1, 2), ("b", 1, 3), ("a", 3, 5)]
-        )
-        self.assertEqual([event.moment for event in found], [1e9, 6e9, 3e9])
-        self.assertTrue(np.allclose([event.slip for event in found], [1, 6, 3]))
-        self.assertEqual([event.cumulated for event in found], [1e9, 7e9, 1e10])
-        self.assertAlmostEqual(found[0].magnitude, (9 - 9.1) / 1.5, 12)
-
-    def test_events_do_not_depend_on_the_number_of_steps(self):
-        """Steady slip of a thousand steps is one event; slip much slower than the mean is none."""
-        for n in (10, 1000):
-            times = np.linspace(2 / n, 2, n)
-            (event,) = events.of_run(run(times, 1e9 * np.minimum(times, 1 + 1e-3 * (times - 1))))
-            self.assertAlmostEqual(event.end, 1, 1)
-            self.assertLess(abs(event.moment / 1e9 - 1), 0.01)
+    def test_table_of_events(self):
+        """Times are in the unit of the results. A run without this table has no events."""
+        content = {"time_unit": {"name": "h", "seconds": 3600}}
+        self.assertEqual(events.of_run(self.folder, content), [])
+        table = self.folder / "events.csv"
+        table.write_text('fracture,start,end,slip,moment,magnitude,cumulated\n"a, b",1,1.5,2e-3,3,4,5\n')
+        self.assertEqual(events.of_run(self.folder, content), [("a, b", 3600, 5400, 2e-3, 3, 4, 5)])
+        table.write_text("fracture,start\na,b\n")
+        with self.assertRaisesRegex(read.PlotError, "events.csv: is not a table of events; run the scene again"):
+            events.of_run(self.folder, content)
 
     def test_tables_are_those_of_the_results(self):
         content = self.run_scene(ROOT / "docs/shear_test.xml", "Time.steps=8", "Output.vtu=false", "Output.time unit=h")
@@ -70,22 +56,23 @@ class Events(PlotTest):
         for row, all_of_step, moment in zip(long, wide, moments, strict=True):
             self.assertEqual((row["fracture"], float(row["moment [N]"])), ("shear plane", moment))
             self.assertEqual(all_of_step["shear plane: moment [N]"], row["moment [N]"])
-        self.assertEqual(row["has_slipped [-]"], "1")
+        self.assertEqual(float(row["fraction_has_slipped [-]"]), 1)
         self.assertIn("mean_traction_local t [Pa]", row)
 
     def test_magnitudes_over_time(self):
         """Dots are at the ends of events, hollow at the end of the run, over the injection rate."""
-        content = run((3600, 7200, 10800), (1e9, 1e9, 2e9))
-        for step in content["steps"]:
-            step["wells"] = {"in": {"rate": 0.5}, "out": {"rate": -0.2}}
-        figure = magnitudes.over_time(events.of_run(content), content["steps"], "run")
+        wells = {"in": {"rate": 0.5}, "out": {"rate": -0.2}}
+        steps = [{"time": t, "single_fractures": {"moment": [moment]}, "wells": wells}
+                 for t, moment in ((3600, 1e9), (7200, 1e9), (10800, 2e9))]
+        found = [event(0, 3600, 1e9), event(7200, 10800, 1e9)]
+        figure = magnitudes.over_time(found, steps, "run")
         ax, below, behind = figure.axes
         dots = {line.get_label(): line.get_xdata().tolist() for line in ax.lines}
         self.assertEqual(dots, {"event": [1], "event that goes on at the end of the run": [3]})
         self.assertEqual(below.lines[0].get_ydata().tolist(), [0, 1e9, 1e9, 2e9])
         self.assertEqual((below.get_xlabel(), behind.get_ylabel()), ("time (h)", "injection rate (m³/s)"))
-        self.assertEqual(magnitudes.injection(content["steps"]).tolist(), [0.5] * 3)
-        self.assertIsNone(magnitudes.over_time([], content["steps"], "run"))
+        self.assertEqual(magnitudes.injection(steps).tolist(), [0.5] * 3)
+        self.assertIsNone(magnitudes.over_time([], steps, "run"))
         self.assertEqual(
             list(csv.reader(io.StringIO(events.as_csv(["a"], [[None], [np.nan], [1]])))), [["a"], [""], [""], ["1"]]
         )

@@ -237,7 +237,7 @@ class Views(ReportTest):
     def view(self):
         """Returns the data of the view, with a function that returns its arrays."""
         content, entries = self.results(), read.scene(self.folder / "out")
-        shown = view.of_run(self.folder / "out", content, entries, events.of_run(content))
+        shown = view.of_run(self.folder / "out", content, entries, events.of_run(self.folder / "out", content))
         return shown, lambda k, kind: np.frombuffer(base64.b64decode(shown["arrays"][k]), dtype=kind)
 
     def values(self, array, surface, name, step):
@@ -345,7 +345,7 @@ class Words(ReportTest):
         self.assertEqual(numbers_in_words.in_unit("{0, ramp(t)}", "m"), "{0, ramp(t)} m")
 
     def test_single_fractures_take_the_place_of_sets(self):
-        """Fractures are sorted by slip. The times of first slip and the table of events are those of the moments."""
+        """Fractures are sorted by slip. The times of first slip are those of the events."""
         step = {
             "time": 4.0,
             "fractures": {"set": {"area": 3.0, "max_slip": 2e-3}},
@@ -356,7 +356,8 @@ class Words(ReportTest):
             "single_fractures": [{"name": "a", "set": "set", "area": 1.0}, {"name": "b", "set": "set", "area": 2.0}],
             "steps": [step],
         }
-        (table, events), _ = figures.of_run(content, None, 3.0)
+        found = [events.Event("b", 3.0, 4.0, 2e-3, 5e9, 0.39931, 5e9)]
+        (table, listed), _ = figures.of_run(content, None, found)
         titles = [
             "fracture",
             "length (m)",
@@ -367,9 +368,9 @@ class Words(ReportTest):
         ]
         self.assertEqual(table.columns, titles)
         self.assertEqual(table.rows, [("b", "2", "3", "2", "2", "5 × 10⁹"), ("a", "1", "–", "1", "1", "0")])
-        self.assertEqual(events.rows, [("b", "3", "4", "2", "5 × 10⁹", "0.3993")])
+        self.assertEqual(listed.rows, [("b", "3", "4", "2", "5 × 10⁹", "0.3993")])
         del content["single_fractures"]
-        (table,), _ = figures.of_run(content, None)
+        (table,), _ = figures.of_run(content, None, [])
         self.assertEqual([row[0] for row in table.rows], ["set"])
 
     def test_rounding_is_zero_in_tables(self):

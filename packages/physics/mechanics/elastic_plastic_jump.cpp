@@ -401,7 +401,8 @@ void ElasticPlasticJump<dim>::for_each_jump(const assembly::State& state,
   const auto history = history_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& face = mesh_->fracture_faces[f];
-    JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) != 0, history(f));
+    JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) == 1, history(f));
+    jump.has_slipped = slid(f, 0) > 0;
     jump.number = parameters_.joints.number_of(f, face.fracture);
     jump.shear_modulus = (elasticity(face.cell[0]).G + elasticity(face.cell[1]).G) / 2;
     if (has_kept) jump.runaway = runaway(f, 0);

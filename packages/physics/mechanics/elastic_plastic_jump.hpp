@@ -48,12 +48,13 @@ std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const Ela
 ///
 /// History variables:
 /// - plastic tangential jump p_old [face, dim - 1], set to w_t on open faces and w_t - lambda_t/K_t on sliding faces;
+/// - "slid" [face, 1]: 0 never, 1 in the last step, 2 before;
 /// - "history of laws" [face, n_history], if any, updated by the laws;
 /// - with these "runaway slip" [face, 1]: largest unstable slip of a step so far, see laws/runaway.hpp.
 ///
 /// Outputs on fracture faces, local and global: total, elastic and plastic jump, traction; opening, slip, aperture
-/// (15), contact state (0 open, 1 stick, 2 slip), mobilised strength |lambda_t|/b. The quantities of laws are 0 on
-/// joints without these laws.
+/// (15), contact state (0 open, 1 stick, 2 slip), "has slipped" (1 from the first slip on), mobilised strength
+/// |lambda_t|/b. The quantities of laws are 0 on joints without these laws.
 ///
 /// Outputs of fractures:
 /// - slip tendency |lambda_t|/(-lambda_n) of the mean traction;

@@ -82,11 +82,13 @@ void declare_jump_outputs(const ElasticPlasticJumpParameters& parameters, const 
   number("aperture", "m", {}, [](const Jump& jump) { return jump.aperture; });
   number("state", "-", {Summary::fractions, "", "", {std::begin(contact::state_names), std::end(contact::state_names)}},
          [](const Jump& jump) { return static_cast<Real>(jump.state); });
+  number("has slipped", "-", {Summary::fractions, "", "", {"", "has slipped"}},
+         [](const Jump& jump) { return Real(jump.has_slipped); });
   number("mobilised strength", "-", {}, [](const Jump& jump) { return jump.mobilised; });
-  std::vector<assembly::Derived> magnitude;
-  if (dim == 3) magnitude = {{"moment_magnitude", "-", moment_magnitude}};
-  number("moment density", "N/m", {Summary::integral, "moment", "", {}, dim == 3 ? "N*m" : "N", magnitude},
-         [](const Jump& jump) { return jump.shear_modulus * jump.slip_since_start; });
+  Summary moment{Summary::integral, "moment", "", {}, dim == 3 ? "N*m" : "N"};
+  if (dim == 3) moment.derived = {{"moment_magnitude", "-", moment_magnitude}};
+  moment.events = {"slip", {"magnitude", "-", moment_magnitude}};
+  number("moment density", "N/m", moment, [](const Jump& jump) { return jump.shear_modulus * jump.slip_since_start; });
   if (parameters.n_history > 0)
     number("runaway slip", "m", {Summary::mean_and_max, "runaway slip"}, [](const Jump& jump) { return jump.runaway; });
   for (const auto& quantity : parameters.quantities) {

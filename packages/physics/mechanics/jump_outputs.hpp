@@ -17,9 +17,10 @@ struct JumpOfFace {
   laws::ContactState state;
   Real elastic[dim], plastic[dim], slip, slip_since_start, aperture, mobilised = 0;
   laws::Contact<Real> at;
-  int number = 0;          ///< of the joint in ElasticPlasticJumpParameters
-  Real shear_modulus = 0;  ///< mean of both sides, Pa
-  Real runaway = 0;        ///< history variable "runaway slip", m
+  bool has_slipped = false;  ///< in this step or before
+  int number = 0;            ///< of the joint in ElasticPlasticJumpParameters
+  Real shear_modulus = 0;    ///< mean of both sides, Pa
+  Real runaway = 0;          ///< history variable "runaway slip", m
 
   JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::JointPoint<dim>& point,
              const laws::JointParameters& joint, bool slid, const laws::History& history);

@@ -61,6 +61,9 @@ TEST(FractureTable, HasAreasOfClasses) {
   EXPECT_THAT(columns[3].values, ElementsAre(DoubleNear(0.5, 1e-14), 0));
   EXPECT_EQ(columns[4].name, "fraction_high");
   EXPECT_THAT(columns[4].values, ElementsAre(DoubleNear(0.5, 1e-14), 0));
+  EXPECT_EQ(
+      table_of(mesh, on_faces(mesh, {.kind = Summary::fractions, .classes = {"", "is high"}}, 1, is_high))[1].name,
+      "area_is_high");
   EXPECT_THAT(digest(described_singles(mesh), columns),
               ElementsAre("low on 2 of 2 fractures: \"short\" (100 % of its area), \"fault\" (50 %)",
                           "high on 1 of 2 fractures: \"fault\" (50 % of its area)"));

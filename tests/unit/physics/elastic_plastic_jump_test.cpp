@@ -104,8 +104,9 @@ TEST(ElasticPlasticJump, OutputsSplitTheJump) {
         }
     }
     const Real slip = dim == 2 ? 2.9 : std::hypot(2.9, 2.05), shear = dim == 2 ? 0.2 : std::hypot(0.2, 0.1);
-    const std::vector<std::pair<std::string, Real>> scalars = {
-        {"opening", -0.04}, {"slip", slip}, {"aperture", 0.26}, {"state", 2}, {"mobilised strength", shear / 0.3}};
+    const std::vector<std::pair<std::string, Real>> scalars = {{"opening", -0.04}, {"slip", slip},
+                                                               {"aperture", 0.26}, {"state", 2},
+                                                               {"has slipped", 1}, {"mobilised strength", shear / 0.3}};
     for (const auto& [name, value] : scalars)
       for (Real shown : s.rock.output(s.x, name)) EXPECT_NEAR(shown, value, 1e-13) << name;
     s.set({5, 0.4, 0}, {0, 0, 0});
