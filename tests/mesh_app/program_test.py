@@ -640,6 +640,30 @@ class Runs(MeshTest):
         self.mesh(self.simple(), "--picture", str(self.folder / "net.png"))
         self.assertGreater((self.folder / "net.png").stat().st_size, 10000)
 
+    @unittest.skipUnless(importlib.util.find_spec("vtkmodules") and shutil.which("Xvfb"), "VTK's Python or Xvfb is missing")
+    def test_picture_in_3d(self):
+        """The picture shows each fracture face and each of its sides once, in the box of the domain."""
+        import picture
+        import space
+        from conformity import network, planned
+        from mesher import make_mesh
+        square = np.array([[0.2, 0.2], [0.8, 0.2], [0.8, 0.8], [0.2, 0.8]])
+        sets = {"flat": np.insert(square, 2, 0.3, axis=1), "steep": np.insert(0.5 * square, 0, 0.5, axis=1) + [0, 0, 0.4]}
+        plan, sizes = planned(network(sets))
+        with mock.patch.object(space, "draw", wraps=space.draw) as draw:
+            picture.draw(make_mesh(plan, sizes), plan, self.folder / "net.png")
+        self.assertGreater((self.folder / "net.png").stat().st_size, 10000)
+        _, parts, bounds = draw.call_args.args
+        self.assertEqual(bounds.tolist(), [[0, 0, 0], [1, 1, 1]])
+        for faces, sides, area in zip(parts[::2], parts[1::2], (0.36, 0.09), strict=True):
+            corners = faces.points[np.array(faces.polygons)]
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            self.assertAlmostEqual(0.5 * np.linalg.norm(normals, axis=1).sum(), area, 12)
+            self.assertEqual(len(np.unique(faces.polygons)) - len(sides.polygons) + len(faces.polygons), 1)  # Euler
+        with mock.patch.object(space.shutil, "which", lambda name: None), self.assertRaisesRegex(picture.NetworkError, "require Xvfb"):
+            space.window.cache_clear()
+            picture.draw(make_mesh(plan, sizes), plan, self.folder / "net.png")
+
 
 if __name__ == "__main__":
     main()
