@@ -258,14 +258,14 @@ def write_coordinates(ax, k, ends, size, middle):
     ticks = plt.MaxNLocator(4 if room > 0.45 else 2).tick_values(low, high) if room > 0.12 else [0.5 * (low + high)]
     first = 0.05 if k == 1 else -1e-9  # the first number on y would meet the last one on x
     ticks = [t for t in ticks if first <= (t - low) / (high - low) <= 1 + 1e-9] or [0.5 * (low + high)]
-    beside = {"ha": "right" if k == 2 else "center", "va": "center"}
+    aligned = {"ha": "right" if k == 2 else "center", "va": "center"}
     for t in ticks:
         at = ends[0].copy()
         at[k] = t
         ax.plot(*np.column_stack([flat(at), flat(at) + 0.012 * size * out]), color=INK, linewidth=0.7, clip_on=False)
-        ax.text(*(flat(at) + (0.02 if k == 2 else 0.045) * size * out), f"{t:.4g}", fontsize=7, **beside)
+        ax.text(*(flat(at) + (0.02 if k == 2 else 0.045) * size * out), f"{t:.4g}", fontsize=7, **aligned)
     ax.text(
-        *(flat(ends).mean(axis=0) + (0.15 if k == 2 else 0.11) * size * out), f"{'xyz'[k]} (m)", fontsize=8, **beside
+        *(flat(ends).mean(axis=0) + (0.15 if k == 2 else 0.11) * size * out), f"{'xyz'[k]} (m)", fontsize=8, **aligned
     )
 
 

@@ -21,13 +21,14 @@ namespace {
 
 /// Returns the blocks of contact. Bodies that modules support in an unknown way have no motion there.
 contact::Blocks contact_blocks(const Structure& structure) {
-  const bool held = std::any_of(structure.modules.begin(), structure.modules.end(),
-                                [](const auto& m) { return m.constrains_bodies() && !m.supporting->supports(); });
+  const bool constrained = std::any_of(structure.modules.begin(), structure.modules.end(), [](const auto& m) {
+    return m.constrains_bodies() && !m.supporting->supports();
+  });
   contact::Blocks found;
   for (int b = 0; b < structure.n_blocks(); ++b) {
     const auto& unknown = structure.unknowns[b];
     if (!unknown.augmented_by.empty()) found.multiplier = b;
-    if (!held && unknown.near_null_space == NearNullSpace::rigid_motions) found.motion = b;
+    if (!constrained && unknown.near_null_space == NearNullSpace::rigid_motions) found.motion = b;
   }
   return found;
 }

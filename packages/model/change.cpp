@@ -29,19 +29,19 @@ std::set<std::string> names_in(const Teuchos::ParameterList& a, const Teuchos::P
   return names;
 }
 
-/// Calls tell(path, name, before, after) for all differing entries and sections with fixed names.
-template <class Tell>
+/// Calls use(path, name, before, after) for all differing entries and sections with fixed names.
+template <class Use>
 void for_fixed(const Teuchos::ParameterList& before, const Teuchos::ParameterList& after,
-               const std::set<std::string>& fixed, const std::string& path, const Tell& tell) {
+               const std::set<std::string>& fixed, const std::string& path, const Use& use) {
   const Teuchos::ParameterList none;
   const auto inside = [&](const auto& list, const std::string& name) -> const Teuchos::ParameterList& {
     return list.isSublist(name) ? list.sublist(name) : none;
   };
   for (const auto& name : names_in(before, after)) {
     if (fixed.count(name)) {
-      if (text_of(before, name) != text_of(after, name)) tell(path, name, before, after);
+      if (text_of(before, name) != text_of(after, name)) use(path, name, before, after);
     } else if (before.isSublist(name) || after.isSublist(name)) {
-      for_fixed(inside(before, name), inside(after, name), fixed, path + (path.empty() ? "" : " > ") + name, tell);
+      for_fixed(inside(before, name), inside(after, name), fixed, path + (path.empty() ? "" : " > ") + name, use);
     }
   }
 }

@@ -83,15 +83,15 @@ Reduction reduce(Model& model, const Scene& own, Real factor) {
     return {factor, false, 0, error.what()};
   }
   const auto report = model.find_equilibrium();
-  const bool held = stands(report);
-  if (report.converged && !held) model.take_back();
-  return {factor, held, report.newton_iterations, held ? "" : reason_of(report)};
+  const bool stable = stands(report);
+  if (report.converged && !stable) model.take_back();
+  return {factor, stable, report.newton_iterations, stable ? "" : reason_of(report)};
 }
 
 }  // namespace
 
 FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> comm,
-                                const std::function<void(const Reduction&)>& tell) {
+                                const std::function<void(const Reduction&)>& report) {
   Model model(reduced(read_scene(*comm, options.scene, options.overrides), options.first), comm);
   check(model);
   run_to_the_end(model, options.first);
@@ -99,7 +99,7 @@ FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> co
   FactorOfSafety found{.stable = options.first, .lost = {}, .reductions = {}, .states = {}};
   const auto in_equilibrium = [&](Real factor) {
     found.reductions.push_back(reduce(model, own, factor));
-    if (tell) tell(found.reductions.back());
+    if (report) report(found.reductions.back());
     return found.reductions.back().stands;
   };
   constexpr Real growth = 1.5;

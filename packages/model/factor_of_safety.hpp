@@ -35,9 +35,9 @@ struct FactorOfSafety {
 /// Runs the scene to its end with the strength of all joints divided by the factor F = `first`. Then F is increased at
 /// the final loads. Bisection follows between the largest F with an equilibrium and the smallest without one
 /// (Zienkiewicz, Humpheson and Lewis 1975). Every trial starts from the state at the largest F with an equilibrium.
-/// `tell` is called after each trial. Throws an Error if the scene has no joints, has balances of rates, or has no
+/// `report` is called after each trial. Throws an Error if the scene has no joints, has balances of rates, or has no
 /// equilibrium for F = `first`. Collective.
 FactorOfSafety factor_of_safety(const SafetyOptions& options, RCP<const Comm> comm,
-                                const std::function<void(const Reduction&)>& tell = {});
+                                const std::function<void(const Reduction&)>& report = {});
 
 }  // namespace sprekk::model

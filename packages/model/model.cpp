@@ -103,11 +103,11 @@ Model::Draft Model::drafted(Scene scene, const std::string& unconstrained) const
     draft.modules = make_modules(draft.scene, mesh);
     if (more_modules_)
       for (auto& module : more_modules_(mesh)) draft.modules.push_back(std::move(module));
-    const bool held = std::any_of(draft.modules.begin(), draft.modules.end(), [](const auto& module) {
+    const bool constrained = std::any_of(draft.modules.begin(), draft.modules.end(), [](const auto& module) {
       const auto* forces = dynamic_cast<const assembly::Supporting*>(module.get());
       return forces && forces->constrains_bodies();
     });
-    SPREKK_CHECK(unconstrained.empty() || held, "{}: {}", draft.scene.origin, unconstrained);
+    SPREKK_CHECK(unconstrained.empty() || constrained, "{}: {}", draft.scene.origin, unconstrained);
   });
   return draft;
 }

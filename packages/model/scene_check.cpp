@@ -159,12 +159,12 @@ std::vector<std::string> misfits(const Draft& draft, const MeshNames& names) { r
 mesh::GlobalMesh checked_mesh(const Draft& draft, std::string* unconstrained) {
   const Scene& scene = draft.value;
   auto errors = draft.report.errors;
-  const auto tell = [&](const std::string& what) { errors.push_back(scene.origin + ": " + what); };
+  const auto add = [&](const std::string& what) { errors.push_back(scene.origin + ": " + what); };
   const auto attempt = [&](const auto& work) {
     try {
       work();
     } catch (const Error& error) {
-      tell(error.what());
+      add(error.what());
     }
   };
   std::optional<mesh::GlobalMesh> mesh;
@@ -180,11 +180,11 @@ mesh::GlobalMesh checked_mesh(const Draft& draft, std::string* unconstrained) {
     no_value = error.what();
   }
   errors.insert(errors.end(), comparison.errors().begin(), comparison.errors().end());
-  if (!no_value.empty() && !errors.empty()) tell(no_value);
+  if (!no_value.empty() && !errors.empty()) add(no_value);
   if (unconstrained)
     *unconstrained = comparison.unconstrained();
   else if (!comparison.unconstrained().empty())
-    tell(comparison.unconstrained());
+    add(comparison.unconstrained());
   base::throw_errors(errors);
   return std::move(*mesh);
 }

@@ -185,11 +185,11 @@ std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh) {
     const auto& [name, set, properties] = single;
     if (properties.empty()) continue;
     const auto& joint = joint_name(scene, mesh, single);
-    const auto tell = [&](const std::string& entry, const std::string& what) {
+    const auto report = [&](const std::string& entry, const std::string& what) {
       errors.push_back(fmt::format("{}: fracture \"{}\": {}: {}", scene.origin, name, entry, what));
     };
     if (const auto wrong = wrong_material(joint, "joint", scene.materials); !wrong.empty()) {
-      tell("\"material\"", wrong);
+      report("\"material\"", wrong);
       continue;
     }
     auto copy = scene.materials.at(joint);
@@ -199,7 +199,7 @@ std::map<int, Material> own_joints(const Scene& scene, const mesh::Mesh& mesh) {
       if (is_entry(names, entry) && entry != "material")
         base::apply_override(entries, entry + "=" + value);
       else if (const auto meant = base::did_you_mean(entry, names); !is_entry(names, entry) && !meant.empty())
-        tell(fmt::format("\"{}\"", entry), "is no entry of a joint" + meant);
+        report(fmt::format("\"{}\"", entry), "is no entry of a joint" + meant);
   }
   const auto draft = base::draft<OwnJoints>(list, scene.origin, "Sprekk", errors);
   base::throw_errors(draft.report.errors);

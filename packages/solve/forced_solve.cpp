@@ -53,19 +53,21 @@ Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
 LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
   if (!solve_.forcing()) return solve_.solve(b, dx, tolerance);
   const Real state_accuracy = std::max(tolerance, std::min(next_accuracy * first_accuracy, accuracy_without_change(b)));
-  Real asked = std::max(first_accuracy, tolerance);
-  auto report = solve_.solve(b, dx, asked);
-  if (asked == tolerance || !report.converged || report.residual <= tolerance) return report;
+  Real requested = std::max(first_accuracy, tolerance);
+  auto report = solve_.solve(b, dx, requested);
+  if (requested == tolerance || !report.converged || report.residual <= tolerance) return report;
   auto& globalisation = problem_.globalisation();
   const auto before = globalisation.state_hash(globalisation.states(x_));
   auto r = fields::create_like(b), correction = fields::create_like(b);
   auto states = states_after(dx);
-  for (int k = 0; k < max_refinements && report.converged && report.residual > tolerance && asked > tolerance; ++k) {
-    asked = states == before ? state_accuracy : std::max(next_accuracy * std::min(asked, report.residual), tolerance);
-    if (report.residual <= asked) break;
+  for (int k = 0; k < max_refinements && report.converged && report.residual > tolerance && requested > tolerance;
+       ++k) {
+    requested =
+        states == before ? state_accuracy : std::max(next_accuracy * std::min(requested, report.residual), tolerance);
+    if (report.residual <= requested) break;
     apply(dx, r);
     for (std::size_t i = 0; i < r.size(); ++i) r[i]->update(1, *b[i], -1);
-    const auto more = solve_.solve(r, correction, asked / report.residual);
+    const auto more = solve_.solve(r, correction, requested / report.residual);
     report.iterations += more.iterations;
     report.residual *= more.residual;
     report.converged = more.converged;

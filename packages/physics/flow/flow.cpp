@@ -396,7 +396,7 @@ void add_closure_warnings(const Setting& setting, std::vector<std::string>& warn
   }
 }
 
-/// Warns about wells beside a fracture in 2D, where rounded coordinates may be the cause.
+/// Warns about wells near a fracture in 2D, where rounded coordinates may be the cause.
 void add_well_warnings(const Setting& setting, std::vector<std::string>& warnings) {
   const auto& [scene, mesh, start] = setting;
   const auto wells = wells_in(scene, mesh.dim());
