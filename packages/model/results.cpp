@@ -267,6 +267,8 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   for (const auto& linear : report.linear_solves)
     step["linear_solves"].push_back(
         {{"iterations", linear.iterations}, {"residual", linear.residual}, {"used", linear.used}});
+  for (const auto& advected : report.advected_solves)
+    step["advected_solves"].push_back({{"iterations", advected.iterations}, {"residual", advected.residual}});
   if (report.converged && !report.floating.empty()) step["floating"] = report.floating;
   if (!report.converged) step["oscillating_faces"] = add_oscillating(report);
   for (const auto& measure : report.measures) step["measures"][with_underscores(measure.name)] = measure.value;

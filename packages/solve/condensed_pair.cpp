@@ -9,11 +9,18 @@ using fields::Map;
 using fields::MultiVector;
 using fields::Operator;
 
-/// Inverse of a pair of blocks, F then K, see CondensedPair; two cycles for S^-1.
+/// Inverse of a pair of blocks, F then K, see CondensedPair; one or two cycles for S^-1.
 class PairInverse : public Operator {
  public:
-  PairInverse(const LinearSystem& pair, RCP<const Vector> D_inverse, RCP<const Operator> S, RCP<const Operator> cycle)
-      : joined_(pair.joined), FK_(pair.blocks[1]), KF_(pair.blocks[2]), D_inverse_(D_inverse), S_(S), cycle_(cycle) {}
+  PairInverse(const LinearSystem& pair, RCP<const Vector> D_inverse, RCP<const Operator> S, RCP<const Operator> cycle,
+              int n_cycles)
+      : joined_(pair.joined),
+        FK_(pair.blocks[1]),
+        KF_(pair.blocks[2]),
+        D_inverse_(D_inverse),
+        S_(S),
+        cycle_(cycle),
+        n_cycles_(n_cycles) {}
   RCP<const Map> getDomainMap() const override { return joined_->map(); }
   RCP<const Map> getRangeMap() const override { return joined_->map(); }
 
@@ -24,8 +31,10 @@ class PairInverse : public Operator {
     rest_K.elementWiseMultiply(1 / scale_K, *D_inverse_, *part(x, 1), 0);
     FK_->apply(rest_K, rest_F, Teuchos::NO_TRANS, -1, 1 / scale_F);
     cycle_->apply(rest_F, y_F);
-    S_->apply(y_F, rest_F, Teuchos::NO_TRANS, -1, 1);
-    cycle_->apply(rest_F, y_F, Teuchos::NO_TRANS, 1, 1);
+    if (n_cycles_ > 1) {
+      S_->apply(y_F, rest_F, Teuchos::NO_TRANS, -1, 1);
+      cycle_->apply(rest_F, y_F, Teuchos::NO_TRANS, 1, 1);
+    }
     MultiVector of_K(*part(x, 1), Teuchos::Copy);
     KF_->apply(y_F, of_K, Teuchos::NO_TRANS, -1, 1 / scale_K);
     y.offsetViewNonConst(joined_->map(0), joined_->first(0))->update(alpha / scale_F, y_F, beta);
@@ -42,6 +51,7 @@ class PairInverse : public Operator {
   RCP<const Matrix> FK_, KF_;
   RCP<const Vector> D_inverse_;
   RCP<const Operator> S_, cycle_;
+  int n_cycles_;
 };
 
 /// Returns D^-1 A_KF with a row for each column of A_FK. Collective.
@@ -59,6 +69,7 @@ CondensedPair::CondensedPair(const BlockOptions& options, const std::vector<Bloc
     : Preconditioner("condensation", pair[0].name),
       first_(pair[0]),
       second_(pair[1].name),
+      n_cycles_(takes_flow_order(options, pair[0]) ? 1 : 2),
       multigrid_(make_multigrid(options, {pair[0]})) {}
 
 void CondensedPair::describe(Teuchos::ParameterList& blocks) const {
@@ -74,7 +85,7 @@ void CondensedPair::prepare(const LinearSystem& pair, SolverCost&) {
   fill_S(pair, *D_inverse);
   // local elimination may make it nonsymmetric
   multigrid_->setup(alone({.block = first_, .matrix = rows_of_S_, .bulk = {}, .symmetric = false}));
-  inverse_ = rcp(new PairInverse(pair, D_inverse, S_, multigrid_->inverse()));
+  inverse_ = rcp(new PairInverse(pair, D_inverse, S_, multigrid_->inverse(), n_cycles_));
 }
 
 /// Fills S on the graph of A_FF. Small entries of the product outside this graph are omitted.

@@ -1,91 +1,78 @@
 #include "solve/condensed_solve.hpp"
 
-#include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace sprekk::solve {
+namespace {
+
+std::vector<int> numbers_up_to(std::size_t n) {
+  std::vector<int> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
+}  // namespace
 
 CondensedSolve::CondensedSolve(BlockProblem& problem, const LinearSolverOptions& options, RCP<base::Timers> timers)
     : problem_(problem),
       timers_(timers),
+      options_(options),
       elimination_(problem),
-      chosen_(make_linear_solver(options, remaining())),
-      tolerance_(options.tolerance),
-      forcing_(options.forcing && !chosen_.solver->reads_matrix()) {
-  std::vector<RCP<const Map>> maps;
-  const int n = static_cast<int>(elimination_.remaining().size());
-  for (int r = 0; r < n; ++r) {
-    maps.push_back(problem_.blocks()[elimination_.remaining()[r]].map);
-    for (int s = 0; s < n; ++s) blocks_.push_back(elimination_.condensed(r, s));
-  }
-  joined_ = std::make_shared<Joined>(maps);
-}
+      whole_(problem, elimination_, numbers_up_to(elimination_.remaining().size()), options),
+      forcing_(options.forcing && !solver().solver->reads_matrix()) {}
 
-std::vector<Block> CondensedSolve::remaining() const {
-  std::vector<Block> blocks;
-  for (int b : elimination_.remaining()) blocks.push_back(problem_.blocks()[b]);
+/// Returns the blocks of a part as indices of LocalElimination::remaining().
+std::vector<int> CondensedSolve::blocks_of(Part part) const {
+  auto blocks = numbers_up_to(elimination_.remaining().size());
+  std::erase_if(blocks, [&](int r) {
+    return problem_.blocks()[elimination_.remaining()[r]].advected != (part == Part::advected);
+  });
   return blocks;
 }
 
-/// Returns powers of two that scale the entries of all blocks to similar magnitude and preserve symmetry.
-std::vector<Real> CondensedSolve::scales() const {
-  std::vector<Real> scales;
-  for (const auto& block : remaining())
-    scales.push_back(std::exp2(std::round(0.5 * std::log2(block.kinematic_scale / block.residual_scale))));
-  return scales;
-}
-
-RCP<const CrsMatrix> CondensedSolve::joined_matrix() {
-  if (!matrix_) matrix_ = std::make_unique<JoinedMatrix>(joined_, blocks_);
-  matrix_->update();
-  return matrix_->matrix()->crs();
-}
-
-LinearSystem CondensedSolve::system() {
-  joined_->set_scales(scales());
-  LinearSystem system{joined_, blocks_, symmetric_, {}, {}};
-  if (chosen_.solver->reads_matrix()) system.matrix = joined_matrix();
-  const bool with_bulk = !problem_.local_groups().empty();
-  const auto blocks = remaining();
-  for (int r = 0; r < static_cast<int>(blocks.size()); ++r) {
-    system.diagonal.push_back({blocks[r],
-                               elimination_.condensed(r, r),
-                               {},
-                               problem_.symmetric_blocks(),
-                               problem_.schur(elimination_.remaining()[r])});
-    // only fields with rigid motions: their aggregates must not cross fractures; other fields couple through eliminated
-    // unknowns
-    if (with_bulk && blocks[r].near_null_space.n() > 0)
-      system.diagonal.back().bulk = [this, r](const auto& work) { elimination_.with_bulk(r, work); };
-  }
-  return system;
+bool CondensedSolve::eliminate() {
+  const auto scope = timers_->scope("local elimination");
+  auto status = elimination_.update(problem_);
+  const bool changed = status.changed || !failure_.empty();
+  failure_ = std::move(status.failure);
+  return changed;
 }
 
 void CondensedSolve::update() {
-  const auto status = [&] {
-    const auto scope = timers_->scope("local elimination");
-    return elimination_.update(problem_);
-  }();
-  const bool symmetric = problem_.symmetric();
-  if (!status.failure.empty()) {
-    failure_ = status.failure;
-  } else if (status.changed || symmetric != symmetric_ || !failure_.empty()) {
-    const auto scope = timers_->scope("set-up of linear solver");
-    symmetric_ = symmetric;
-    failure_ = chosen_.solver->setup(system());
-    ++n_setups_;
-  }
+  const bool changed = eliminate(), symmetric = problem_.symmetric();
+  if (!failure_.empty() || !(changed || outdated_ || symmetric != symmetric_)) return;
+  const auto scope = timers_->scope("set-up of linear solver");
+  symmetric_ = symmetric;
+  outdated_ = false;
+  failure_ = whole_.setup(symmetric_);
+  ++n_setups_;
 }
 
-LinearReport CondensedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
+LinearReport CondensedSolve::solve_by(RemainingSolve& solver, const BlockVector& b, BlockVector& dx, Real tolerance) {
   LinearReport report;
   report.reason = failure_;
   if (!failure_.empty()) return report;
   const auto scope = timers_->scope("linear solve");
-  const auto rhs = joined_->gather(elimination_.reduce(b)), solution = rcp(new Vector(joined_->map()));
-  report = chosen_.solver->solve(*rhs, *solution, tolerance);
-  if (!report.converged) return report;
-  elimination_.expand(b, joined_->scatter(solution), dx);
+  BlockVector y;
+  report = solver.solve(elimination_.reduce(b), y, tolerance);
+  if (report.converged) elimination_.expand(b, y, dx);
   return report;
+}
+
+LinearReport CondensedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
+  return solve_by(whole_, b, dx, tolerance);
+}
+
+LinearReport CondensedSolve::solve_part(Part part, const BlockVector& b, BlockVector& dx, Real tolerance) {
+  auto& solver = parts_.try_emplace(part, problem_, elimination_, blocks_of(part), options_).first->second;
+  eliminate();
+  outdated_ = true;
+  if (failure_.empty()) {
+    const auto scope = timers_->scope("set-up of linear solver");
+    failure_ = solver.setup(part == Part::others && problem_.symmetric_blocks());
+  }
+  return solve_by(solver, b, dx, tolerance);
 }
 
 }  // namespace sprekk::solve

@@ -1,9 +1,12 @@
 // Solution with the whole Jacobian: local elimination, linear solver for the remaining blocks, back-substitution.
 #pragma once
 
+#include <map>
+#include <string>
+#include <vector>
+
 #include "base/timer.hpp"
-#include "solve/linear_solver.hpp"
-#include "solve/local_elimination.hpp"
+#include "solve/remaining_solve.hpp"
 
 namespace sprekk::solve {
 
@@ -20,27 +23,34 @@ class CondensedSolve {
   /// Computes dx = A^-1 b, [block], to the relative residual `tolerance`. Rows of constrained unknowns are dx_i = b_i.
   LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
 
-  Real tolerance() const { return tolerance_; }
+  /// Blocks with Block::advected, or all others.
+  enum class Part { advected, others };
+  /// Returns whether advected blocks remain after local elimination.
+  bool has_advected() const { return !blocks_of(Part::advected).empty(); }
+  /// Computes dx = A_cc^-1 b_c for the remaining blocks c of a part, with the present problem.matrix(). b must be zero
+  /// in the other part, where dx is the response of eliminated unknowns or zero. update() must precede the next
+  /// solve().
+  LinearReport solve_part(Part part, const BlockVector& b, BlockVector& dx, Real tolerance);
+
+  Real tolerance() const { return options_.tolerance; }
   bool forcing() const { return forcing_; }
-  const ChosenSolver& solver() const { return chosen_; }
-  int n_setups() const { return n_setups_; }  ///< number of factorisations or hierarchies so far
+  const ChosenSolver& solver() const { return whole_.solver(); }
+  int n_setups() const { return n_setups_; }  ///< number of factorisations or hierarchies of all blocks so far
 
  private:
-  std::vector<Block> remaining() const;
-  std::vector<Real> scales() const;
-  RCP<const CrsMatrix> joined_matrix();
-  LinearSystem system();
+  std::vector<int> blocks_of(Part part) const;
+  bool eliminate();
+  LinearReport solve_by(RemainingSolve& solver, const BlockVector& b, BlockVector& dx, Real tolerance);
 
   BlockProblem& problem_;
   RCP<base::Timers> timers_;
+  LinearSolverOptions options_;
   LocalElimination elimination_;
-  std::shared_ptr<Joined> joined_;
-  Blocks blocks_;  // [r * n + s] remaining blocks
-  ChosenSolver chosen_;
-  std::unique_ptr<JoinedMatrix> matrix_;  // for solvers that read a matrix
-  Real tolerance_;
+  RemainingSolve whole_;
+  std::map<Part, RemainingSolve> parts_;  // empty before their first use
   bool forcing_;
   bool symmetric_ = false;
+  bool outdated_ = false;  // the elimination has changed since the last set-up of all blocks
   int n_setups_ = 0;
   std::string failure_;
 };

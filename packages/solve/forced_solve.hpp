@@ -12,8 +12,9 @@ namespace sprekk::solve {
 ///   ends if two successive accuracies lead to the same states. This avoids states to which the exact step would not
 ///   lead. Otherwise the solve continues to the tolerance.
 /// - No face changes state: convergence is almost quadratic. The solve ends at the larger of 0.01 (e_k / e_(k-1))^2 (as
-///   Eisenstat and Walker 1996, choice 2) and 0.01 tolerance / e_k (as Kelley 1995, 6.3), at most the second accuracy.
-///   e is the largest measure of convergence.
+///   Eisenstat and Walker 1996, choice 2) and 0.01 tolerance / e_k (as Kelley 1995, 6.3), at most the second accuracy,
+///   or 1e-6 with advected blocks. e is the largest measure of convergence. In the first iteration the ratio is 0, or 1
+///   with advected blocks, whose rows are not linear.
 /// Refers to its arguments. All members are collective.
 class ForcedSolve {
  public:
@@ -31,6 +32,11 @@ class ForcedSolve {
 
   /// Computes dx = A^-1 b. The Newton step is from x to x - dx.
   LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
+  using Part = CondensedSolve::Part;
+  /// Returns whether there are advected blocks.
+  bool has_advected() const { return solve_.has_advected(); }
+  /// Computes dx = A_cc^-1 b_c for the blocks c of a part; dx = 0 in others. update() must precede the next solve().
+  LinearReport solve_part(Part part, const BlockVector& b, BlockVector& dx);
   /// Returns the evaluation at x - dx, once, if the last solve() needed it, else an empty one. Local.
   fields::Evaluation take_end() { return std::exchange(end_, {}); }
 

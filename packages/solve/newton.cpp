@@ -246,6 +246,7 @@ NewtonReport Newton::solve(Evaluation& x) {
   }
   picard.reset();
   report.linear_solves = found.linear_solves;
+  report.advected_solves = found.advected_solves;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.stopped) return report;
   x = dynamic_cast<const NoxGroup&>(solver->getSolutionGroup()).x();

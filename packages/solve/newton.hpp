@@ -37,6 +37,7 @@ struct NewtonReport {
   bool stopped = false;                       ///< stopped by should_stop
   int iterations = 0;                         ///< linear solves: Newton steps, including repetitions with damping
   std::vector<LinearReport> linear_solves;    ///< one per iteration
+  std::vector<LinearReport> advected_solves;  ///< solves of advected blocks alone, after strong changes of a flow
   std::string reason;                         ///< reason of a failure
   std::string floating;                       ///< floating bodies in the last iterate that had some, as text
   std::vector<char> oscillating;              ///< [as Globalisation::states()] state changed in the last five iterates

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::solve {
 namespace {
@@ -12,6 +13,9 @@ namespace {
 constexpr Real smallest_length = 1.0 / 64, min_damping = 0.1, max_damping = 10;
 constexpr Real solved_part = 0.1;  // of the merit of the lagged f
 constexpr int max_frozen = 4, max_unbalanced = 3, max_restarts = 3;
+constexpr Real max_imbalance = 10, max_error_of_advected = 1;  // measures of convergence
+
+using Part = ForcedSolve::Part;
 
 }  // namespace
 
@@ -40,18 +44,25 @@ bool NewtonStep::compute(NOX::Abstract::Group& group, double& length, const NOX:
     return false;
   }
   if (reject(attempt, *taken)) return true;
+  carry(attempt, *taken);
   length = taken->length;
   accept(attempt.group, *taken);
   return true;
 }
 
-/// Computes dx = -A^-1 f with the Jacobian A at the iterate, including the present damping.
+/// Computes dx = -A^-1 f with the Jacobian A at the iterate, including the present damping; flow first if it begins.
 bool NewtonStep::linearize(const NoxGroup& group, NOX::Abstract::Vector& dx) {
   report_.damped = picard_.lags() || damping_ > 0 || iterates_.swings();
   linear_.jacobian(group.x());
-  linear_.update();
   auto blocks = blocks_of(dx);
-  report_.linear_solves.push_back(linear_.solve(group.f(), blocks, linear_.tolerance()));
+  flow_first_ = begins_flow(group);
+  if (flow_first_) {
+    report_.damped = true;
+    report_.linear_solves.push_back(linear_.solve_part(Part::others, group.f(), blocks));
+  } else {
+    linear_.update();
+    report_.linear_solves.push_back(linear_.solve(group.f(), blocks, linear_.tolerance()));
+  }
   dx.scale(-1);
   return report_.linear_solves.back().converged;
 }
@@ -136,6 +147,54 @@ bool NewtonStep::reject(const Attempt& attempt, Trial& taken) {
   if (back) attempt.group = attempt.from;
   if (back || lagged) taken.merit = merit_of_changed_f(attempt.group);
   return back;
+}
+
+/// Returns whether this is the first step of a solve, and its flow is far from balance. The linearisation of advected
+/// blocks about this flow is then meaningless.
+bool NewtonStep::begins_flow(const NoxGroup& group) const {
+  return iterates_.empty() && damping_ == 0 && linear_.has_advected() && error_of(group, Part::others) > max_imbalance;
+}
+
+/// Lets advected blocks follow a strong change of their flow: after a step of the flow alone, or if their errors have
+/// grown because they are linearised about another flow. For a given flow, their rows are linear or nearly so. The
+/// blocks return to the last iterate, and one solve with the new flow replaces their step if it reduces their errors.
+void NewtonStep::carry(const Attempt& attempt, Trial& taken) {
+  if (!linear_.has_advected()) return;
+  auto& group = attempt.group;
+  const Real allowed = std::max(max_error_of_advected, error_of(attempt.from, Part::advected));
+  if (!flow_first_ && !(error_of(group, Part::advected) > allowed)) return;
+  const NoxGroup stepped(group);
+  auto start = stepped.x().x();
+  for (std::size_t b = 0; b < start.size(); ++b)
+    if (problem_.blocks()[b].advected) start[b] = attempt.from.x().x()[b];
+  group.move_to(flow_first_ ? stepped.x() : Evaluation(start));
+  group.computeF();
+  report_.damped = true;
+  linear_.jacobian(group.x());
+  const auto dx = group.getX().clone(NOX::ShapeCopy);
+  auto blocks = blocks_of(*dx);
+  report_.advected_solves.push_back(linear_.solve_part(Part::advected, group.f(), blocks));
+  if (report_.advected_solves.back().converged) {
+    group.computeX(NoxGroup(group), *dx, -1);
+    const Real merit = this->merit(group);
+    if (std::isfinite(merit) && error_of(group, Part::advected) < error_of(stepped, Part::advected)) {
+      taken.merit = merit;
+      return;
+    }
+  }
+  group = stepped;
+  taken.merit = merit_of_changed_f(group);  // sizes of rows have changed
+}
+
+/// Returns the largest measure of convergence of the advected blocks, or of balances that are not advected.
+Real NewtonStep::error_of(const NoxGroup& group, Part part) const {
+  Real error = 0;
+  const auto measures = problem_.measures(group.x(), group.f());
+  for (const auto& block : problem_.blocks())
+    for (const auto& measure : measures)
+      if (block.advected == (part == Part::advected) && block.balance && measure.name == block.name)
+        error = std::max(error, measure.value);
+  return error;
 }
 
 /// Accepts a step. Before the first full step, the linear part is not balanced, so calibration starts with its result.

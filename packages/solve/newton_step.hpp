@@ -26,6 +26,8 @@ namespace sprekk::solve {
 /// - Before a step is tried, its share of free motions is balanced, see Globalisation::balance().
 /// - Entities with alternating states are damped by Iterates::swinging() in the next step.
 /// - Coefficients of fluxes that depend on x: Picard decides when steps are searched and which are rejected.
+/// - If the flow is far from balance at the start of a solve, the first step changes the flow only. Advected blocks
+///   follow strong changes of the flow by a solve of their own, see carry().
 /// - Resistance that decreases with the motion: once a full step with lagged coefficients increases the merit of the
 /// lagged problem,
 ///   later steps are searched for a decrease of this merit. The first step of a Picard phase is not searched. The
@@ -39,7 +41,8 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
     std::string floating;  ///< floating bodies in the last iterate that had some, as text
     /// Stagnation of the iteration, see Iterates. With frozen coefficients, also: four steps did not halve the merit.
     bool stagnant = false;
-    bool damped = false;  ///< the last Jacobian of a linear solve was damped or lagged, on this rank
+    bool damped = false;  ///< the last Jacobian of a linear solve was damped, lagged or of another x, on this rank
+    std::vector<LinearReport> advected_solves;  ///< see NewtonStep::carry()
   };
 
   NewtonStep(BlockProblem& problem, ForcedSolve& linear, Picard& picard)
@@ -84,6 +87,8 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   bool return_to_lag(const Attempt& attempt);
   Found enter_other_states(Attempt& attempt);
   bool reject(const Attempt& attempt, Trial& taken);
+  bool begins_flow(const NoxGroup& group) const;
+  void carry(const Attempt& attempt, Trial& taken);
   void accept(NoxGroup& group, const Trial& taken);
 
   Found try_direction(Attempt& attempt) const;
@@ -91,6 +96,7 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   Real merit_after(const Attempt& attempt, Direction& along, Real length) const;
   Real merit(NoxGroup& group) const;
   Real merit_of_changed_f(NoxGroup& group) const;
+  Real error_of(const NoxGroup& group, ForcedSolve::Part part) const;
   bool searches() const { return !picard_.lags() || (struggles_ && !picard_.fresh()); }
   bool begins_to_struggle(const Trial& taken);
   bool freeze(const Trial& taken);
@@ -103,11 +109,12 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   Report report_;
   Iterates iterates_;
   Real damping_ = 0;
-  int n_unbalanced_ = 0;    // steps in which a body met no resistance
-  int n_restarts_ = 0;      // restarts of the search without an acceptable step
-  int n_frozen_ = 0;        // successive steps with frozen coefficients
-  bool weakens_ = false;    // see Globalisation::weakens()
-  bool struggles_ = false;  // a full step with lagged coefficients increased the merit
+  int n_unbalanced_ = 0;     // steps in which a body met no resistance
+  int n_restarts_ = 0;       // restarts of the search without an acceptable step
+  int n_frozen_ = 0;         // successive steps with frozen coefficients
+  bool weakens_ = false;     // see Globalisation::weakens()
+  bool flow_first_ = false;  // the direction is zero in advected blocks
+  bool struggles_ = false;   // a full step with lagged coefficients increased the merit
 };
 
 }  // namespace sprekk::solve

@@ -220,6 +220,7 @@ std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, con
   if (options.type == "direct") return make_direct(blocks);
   if (options.type == "Ifpack2") return make_ifpack2(options.ifpack2, blocks);
   if (options.type == "Gauss-Seidel") return make_gauss_seidel(blocks);
+  if (options.type == "ILU" && !is_condensed_pair(blocks)) return make_advected(first.name, nullptr);
   if (!first.coordinates.is_null() && enrich_first(blocks))
     return needs_fine_level(options, blocks) ? std::make_unique<FineLevel>(options, blocks)
                                              : make_multigrid(options, blocks);
@@ -228,7 +229,7 @@ std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, con
   if (options.type == "multigrid")
     fail(first.name, "type",
          "multigrid requires blocks of unknowns with coordinates, and blocks in their groups; MueLu, Ifpack2, "
-         "Gauss-Seidel and direct do not");
+         "Gauss-Seidel, ILU and direct do not");
   if (options.multigrid)
     fail(first.name, "multigrid", "has no effect: the unknowns of the block have no coordinates, or it is in a group");
   return blocks.size() == 1 ? make_gauss_seidel(blocks) : make_direct(blocks);
@@ -294,9 +295,8 @@ std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions&
 
 bool takes_muelu(const BlockOptions& options, const Block& block) {
   const int n_modes = block.near_null_space.n() > 0 ? block.near_null_space.n() : block.n_components;
-  const bool own = Multigrid::can_solve(block.n_components, n_modes),
-             other = !own || (block.advected && !options.multigrid);
-  if (options.type == "MueLu" || (options.type == "auto" && other)) return true;
+  const bool own = Multigrid::can_solve(block.n_components, n_modes);
+  if (options.type == "MueLu" || (options.type == "auto" && !own)) return true;
   if (!own)
     fail(block.name, "type",
          fmt::format("multigrid is not for {} unknowns of a node and {} motions; MueLu is", block.n_components,
@@ -304,9 +304,19 @@ bool takes_muelu(const BlockOptions& options, const Block& block) {
   return false;
 }
 
+bool takes_flow_order(const BlockOptions& options, const Block& first) {
+  return options.type == "ILU" || (options.type == "auto" && first.advected && !options.multigrid);
+}
+
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks) {
-  if (takes_muelu(options, blocks.front())) return make_muelu(options.muelu, blocks);
-  return std::make_unique<NodeMultigrid>(options.multigrid.value_or(MultigridOptions()), blocks);
+  const auto& first = blocks.front();
+  if (options.type == "ILU") return make_advected(first.name, nullptr);
+  std::unique_ptr<Preconditioner> cycles;
+  if (takes_muelu(options, first))
+    cycles = make_muelu(options.muelu, blocks);
+  else
+    cycles = std::make_unique<NodeMultigrid>(options.multigrid.value_or(MultigridOptions()), blocks);
+  return takes_flow_order(options, first) ? make_advected(first.name, std::move(cycles)) : std::move(cycles);
 }
 
 std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks) {

@@ -62,11 +62,14 @@ class Preconditioner {
 std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
                                                     const std::vector<Block>& blocks);
 
-/// Returns whether MueLu replaces Sprekk's multigrid for a block: as requested, for advected blocks without multigrid
-/// options, and for node sizes without compiled code. Throws an Error if the requested type is not available.
+/// Returns whether MueLu replaces Sprekk's multigrid for a block: as requested, and for node sizes without compiled
+/// code. Throws an Error if the requested type is not available.
 bool takes_muelu(const BlockOptions& options, const Block& first);
-/// Returns multigrid for the first block, by its coordinates and near-null space, and for blocks that enrich it. MueLu
-/// solves for one block only.
+/// Returns whether a block has incomplete factors in the order of a flow: as requested, or by default if the block is
+/// advected and has no options of multigrid.
+bool takes_flow_order(const BlockOptions& options, const Block& first);
+/// Returns multigrid for the first block, by its coordinates and near-null space, and for blocks that enrich it; or the
+/// method for an advected block. MueLu solves for one block only.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks);
 
 /// Return methods for the matrix of one block, or of several joined blocks.
@@ -74,6 +77,10 @@ std::unique_ptr<Preconditioner> make_muelu(const Teuchos::ParameterList& given, 
 std::unique_ptr<Preconditioner> make_ifpack2(const Teuchos::ParameterList& given, const std::vector<Block>& blocks);
 std::unique_ptr<Preconditioner> make_gauss_seidel(const std::vector<Block>& blocks);
 std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks);
+/// Returns incomplete factors in the order of a flow, see FlowFactors, for the group that begins with `block`, in a few
+/// steps of MinimalResidual. While less than a hundredth of the rows take from others in a flow, `at_rest` replaces the
+/// factors; null: never.
+std::unique_ptr<Preconditioner> make_advected(const std::string& block, std::unique_ptr<Preconditioner> at_rest);
 
 /// Matrix of a whole system, for methods that require one.
 class WholeMatrix {

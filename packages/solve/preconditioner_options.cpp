@@ -15,9 +15,10 @@ void MultigridOptions::describe(base::Section& section) {
 
 void BlockOptions::describe(base::Section& section) {
   section.choice(
-      type, "type", {"auto", "multigrid", "MueLu", "Ifpack2", "Gauss-Seidel", "direct"},
-      "preconditioner of the block or of the group that begins with it; auto: multigrid for unknowns with coordinates, "
-      "MueLu for advected unknowns, else Gauss-Seidel, and direct for groups without their own method");
+      type, "type", {"auto", "multigrid", "MueLu", "Ifpack2", "Gauss-Seidel", "ILU", "direct"},
+      "preconditioner of the block or of the group that begins with it; ILU: incomplete factors in the order of a "
+      "flow; auto: multigrid for unknowns with coordinates, ILU for unknowns that a flow carries, else Gauss-Seidel, "
+      "and direct for groups without their own method");
   section.entry(with, "with", "-", "name of the block whose group contains this block; empty: as the fields require");
   section.section(multigrid, "multigrid", "multigrid method of Sprekk, for type multigrid or auto");
   section.passthrough(muelu, "MueLu", "parameters of MueLu in place of the defaults, for type MueLu");

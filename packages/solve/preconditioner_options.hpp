@@ -22,7 +22,7 @@ struct MultigridOptions : multigrid::Options {
 /// Options of one block, or of the group that begins with it. The lists are passed to the libraries unchanged, on top
 /// of the defaults.
 struct BlockOptions {
-  std::string type = "auto";  ///< auto | multigrid | MueLu | Ifpack2 | Gauss-Seidel | direct
+  std::string type = "auto";  ///< auto | multigrid | MueLu | Ifpack2 | Gauss-Seidel | ILU | direct
   std::string with;           ///< block whose group includes this block; empty: as declared by the fields
   std::optional<MultigridOptions> multigrid;  ///< of Sprekk's multigrid; absent: the defaults
   Teuchos::ParameterList muelu{"MueLu"}, ifpack2{"Ifpack2"};

@@ -37,6 +37,7 @@ NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
   auto newton = newton_.solve(x);
   report.newton_iterations += newton.iterations;
   append(newton.linear_solves, report.linear_solves);
+  append(newton.advected_solves, report.advected_solves);
   return newton;
 }
 

@@ -14,12 +14,13 @@ struct TimeSteppingOptions {
 
 struct StepReport {
   bool converged = false;
-  bool stopped = false;                     ///< by NewtonOptions::should_stop
-  Real time = 0;                            ///< time of the state x
-  int newton_iterations = 0;                ///< including rejected substeps
-  fields::Exchanges exchanges;              ///< likewise, set by the owner of the problem
-  std::vector<LinearReport> linear_solves;  ///< likewise, [Newton iteration]
-  int substeps = 0;                         ///< committed substeps
+  bool stopped = false;                       ///< by NewtonOptions::should_stop
+  Real time = 0;                              ///< time of the state x
+  int newton_iterations = 0;                  ///< including rejected substeps
+  fields::Exchanges exchanges;                ///< likewise, set by the owner of the problem
+  std::vector<LinearReport> linear_solves;    ///< likewise, [Newton iteration]
+  std::vector<LinearReport> advected_solves;  ///< likewise, see NewtonReport
+  int substeps = 0;                           ///< committed substeps
   int cuts = 0;
   std::string reason;             ///< of the last failure, if any
   std::vector<char> oscillating;  ///< [as Globalisation::states()] oscillating states in the last failure

@@ -379,4 +379,61 @@ class ScalarProblem : public BlockProblem, public fields::Globalisation {
   Real t_ = 0, dt_ = 0;
 };
 
+/// A flow p = t and a quantity T that it carries, on each rank: p - t = 0, T + p (T - 1) = 0. With `heats`, the flow
+/// also depends on T: p - t (1 + T/1e7) = 0.
+class CarriedProblem : public BlockProblem {
+ public:
+  CarriedProblem(const RCP<const Comm>& comm, bool heats) : comm_(comm), feedback_(heats ? 1e-7 : 0), matrix_(2) {
+    const GlobalIndex rank = comm->getRank();
+    const auto map = make_map({rank}, comm);
+    blocks_.push_back({"p", map, 1, 1, 1, Teuchos::null, {}});
+    blocks_.push_back({"T", map, 1, 1, 1, Teuchos::null, {}});
+    blocks_.back().advected = true;
+    for (auto& block : blocks_) block.balance = true;
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        Filler one(map, map);
+        one.add(rank, rank, 1);
+        matrix_(i, j) = one.done();
+      }
+  }
+  RCP<const Comm> comm() const override { return comm_; }
+  const std::vector<Block>& blocks() const override { return blocks_; }
+  const std::vector<LocalGroup>& local_groups() const override { return groups_; }
+  void set_time(Real t, Real) override { t_ = t; }
+  void commit(const Evaluation&) override {}
+  void residual(const Evaluation& at, BlockVector& r) override { raw_residual(at, r); }
+  void raw_residual(const Evaluation& at, BlockVector& r) override {
+    const Real p = at.x()[0]->getData()[0], T = at.x()[1]->getData()[0];
+    r[0]->putScalar(p - t_ * (1 + feedback_ * T));
+    r[1]->putScalar(T + p * (T - 1));
+  }
+  void jacobian(const Evaluation& at) override {
+    const Real p = at.x()[0]->getData()[0], T = at.x()[1]->getData()[0];
+    const auto set = [&](int i, int j, Real value) { matrix_(i, j)->getLocalMatrixHost().values(0) = value; };
+    set(0, 0, 1);
+    set(0, 1, -t_ * feedback_);
+    set(1, 0, T - 1);
+    set(1, 1, 1 + p);
+  }
+  const BlockMatrix& matrix() const override { return matrix_; }
+  bool symmetric() const override { return false; }
+  ConstView<char*> constrained(int) const override { return {}; }
+  std::vector<Measure> measures(const Evaluation&, const BlockVector& r) override {
+    return {{"p", r[0]->normInf() / (0.01 * t_)}, {"T", r[1]->normInf() / t_}};
+  }
+  Real merit(const Evaluation&, const BlockVector& r) override {
+    return std::pow(r[0]->norm2(), 2) + 1e-12 * std::pow(r[1]->norm2(), 2);
+  }
+  BlockVector zero() const { return {rcp(new Vector(blocks_[0].map)), rcp(new Vector(blocks_[1].map))}; }
+
+ private:
+  RCP<const Comm> comm_;
+  Real feedback_;
+  std::vector<Block> blocks_;
+  std::vector<LocalGroup> groups_;
+  BlockMatrix matrix_;
+  Real t_ = 0;
+};
+
 }  // namespace sprekk::test

@@ -105,6 +105,35 @@ TEST(Newton, FindsWhatAFluidOpensFromFixedPointsOnly) {
   }
 }
 
+/// When the flow begins, a solve of the carried quantity alone replaces its step, which is linearised about the state
+/// of rest. A flow that stays the same needs none.
+TEST(Newton, CarriesAQuantityWithTheNewFlow) {
+  for (const bool heats : {false, true})
+    for (const char* type : {"direct", "iterative"}) {
+      CarriedProblem problem(Tpetra::getDefaultComm(), heats);
+      NewtonOptions options;
+      options.linear_solver.type = type;
+      Newton newton(problem, options);
+      auto x = problem.zero();
+      problem.set_time(1e6, 1);
+      const auto report = newton.solve(x);
+      ASSERT_TRUE(report.converged) << report.reason;
+      EXPECT_EQ(report.advected_solves.size(), 1u) << heats;
+      EXPECT_LE(report.iterations, heats ? 3 : 1);
+      const Real p = x[0]->getData()[0], T = x[1]->getData()[0];
+      EXPECT_NEAR(T, p / (1 + p), 1e-12);
+      EXPECT_NEAR(p, 1e6 * (1 + (heats ? 1e-7 : 0) * T), 1e-5);
+      BlockVector b = problem.zero(), dx = problem.zero();
+      b[0]->putScalar(1);
+      const auto response = newton.solve_linearized(x, b, dx, 1e-12);
+      ASSERT_TRUE(response.converged) << response.reason;
+      const Real slope = heats ? 0.1 : 0;  // of p in T
+      EXPECT_NEAR(dx[1]->getData()[0], -(T - 1) / (1 + p + slope * (T - 1)), 1e-15);
+      const auto again = newton.solve(x);
+      EXPECT_TRUE(again.converged && again.advected_solves.empty());
+    }
+}
+
 TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
   GridProblem problem(Tpetra::getDefaultComm(), {2, 6, 6, false, true, -1});
   Newton newton(problem, {});

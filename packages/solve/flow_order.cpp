@@ -1,0 +1,119 @@
+#include "solve/flow_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sprekk::solve {
+
+std::size_t LocalRows::find(LocalIndex row, LocalIndex wanted) const {
+  const auto begin = column.begin() + static_cast<std::ptrdiff_t>(start[row]),
+             end = column.begin() + static_cast<std::ptrdiff_t>(start[row + 1]);
+  const auto found = std::lower_bound(begin, end, wanted);
+  return found != end && *found == wanted ? static_cast<std::size_t>(found - column.begin()) : start[row + 1];
+}
+
+Real LocalRows::at(LocalIndex row, LocalIndex wanted) const {
+  const auto k = find(row, wanted);
+  return k < start[row + 1] ? value[k] : 0;
+}
+
+namespace {
+
+constexpr Real directed = 2, strong = 1e-3;
+
+/// Rows from which a row takes.
+struct Sources {
+  std::vector<std::size_t> start = {0};  ///< [row + 1]
+  std::vector<LocalIndex> row;
+};
+
+Sources sources_of(const LocalRows& A) {
+  std::vector<Real> size;  // [row] square root of |diagonal|
+  for (LocalIndex i = 0; i < A.n(); ++i) size.push_back(std::sqrt(std::abs(A.at(i, i))));
+  Sources sources;
+  for (LocalIndex i = 0; i < A.n(); ++i) {
+    for (auto k = A.start[i]; k < A.start[i + 1]; ++k) {
+      const LocalIndex j = A.column[k];
+      const Real coupling = std::abs(A.value[k]);
+      if (j != i && coupling > strong * size[i] * size[j] && coupling > directed * std::abs(A.at(j, i)))
+        sources.row.push_back(j);
+    }
+    sources.start.push_back(sources.row.size());
+  }
+  return sources;
+}
+
+/// Numbers strong components in the order in which Tarjan's algorithm completes them: each after all its sources.
+class Components {
+ public:
+  explicit Components(const Sources& sources)
+      : sources_(sources), of_row(sources.start.size() - 1, -1), index_(of_row.size(), -1), low_(of_row.size()) {
+    for (LocalIndex i = 0; i < static_cast<LocalIndex>(of_row.size()); ++i)
+      if (index_[i] < 0) visit_from(i);
+  }
+  LocalIndex n = 0;
+
+ private:
+  const Sources& sources_;
+
+ public:
+  std::vector<LocalIndex> of_row;
+
+ private:
+  void enter(LocalIndex i) {
+    index_[i] = low_[i] = n_entered_++;
+    open_.push_back(i);
+    path_.emplace_back(i, sources_.start[i]);
+  }
+
+  void visit_from(LocalIndex root) {
+    enter(root);
+    while (!path_.empty()) {
+      auto& [i, next] = path_.back();
+      if (next < sources_.start[i + 1]) {
+        const LocalIndex j = sources_.row[next++];
+        if (index_[j] < 0)
+          enter(j);
+        else if (of_row[j] < 0)
+          low_[i] = std::min(low_[i], index_[j]);
+        continue;
+      }
+      const LocalIndex done = i;
+      path_.pop_back();
+      if (low_[done] == index_[done]) close(done);
+      if (!path_.empty()) low_[path_.back().first] = std::min(low_[path_.back().first], low_[done]);
+    }
+  }
+
+  void close(LocalIndex root) {
+    LocalIndex i;
+    do {
+      i = open_.back();
+      open_.pop_back();
+      of_row[i] = n;
+    } while (i != root);
+    ++n;
+  }
+
+  std::vector<LocalIndex> index_, low_, open_;
+  std::vector<std::pair<LocalIndex, std::size_t>> path_;  // rows and their next source
+  LocalIndex n_entered_ = 0;
+};
+
+}  // namespace
+
+FlowOrder flow_order(const LocalRows& A) {
+  const auto sources = sources_of(A);
+  FlowOrder order;
+  for (LocalIndex i = 0; i < A.n(); ++i) order.n_directed += sources.start[i + 1] > sources.start[i];
+  const Components components(sources);
+  std::vector<LocalIndex> next(components.n + 1, 0);  // [n - 1 - component] next position
+  for (const LocalIndex c : components.of_row) ++next[components.n - c];
+  for (LocalIndex c = 0; c < components.n; ++c) next[c + 1] += next[c];
+  order.row.resize(A.n());
+  for (LocalIndex i = 0; i < A.n(); ++i) order.row[next[components.n - 1 - components.of_row[i]]++] = i;
+  return order;
+}
+
+}  // namespace sprekk::solve
