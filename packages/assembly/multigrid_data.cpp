@@ -1,8 +1,10 @@
 #include "assembly/multigrid_data.hpp"
 
+#include "assembly/facet_corners.hpp"
 #include "assembly/order_one.hpp"
 #include "contact/rigid_motion.hpp"
 #include "mesh/facets.hpp"
+#include "mesh/flat_cells.hpp"
 
 #include <cmath>
 #include <vector>
@@ -63,6 +65,13 @@ RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const Multi
 
 void set_multigrid(const mesh::Mesh& mesh, NearNullSpace near_null_space, const fields::Layout& layout,
                    fields::Block& block) {
+  if (layout.field().entity == Entity::facet && layout.field().n_components == 1 && !block.advected) {
+    const auto corners = facet_corners(mesh, layout);
+    block.interpolation = corners.interpolation;
+    block.coordinates = corners.places;
+    block.patches = mesh::facets_of_flat_cells(mesh);
+    return;
+  }
   block.coordinates = owned_coordinates(mesh, layout);
   if (near_null_space == NearNullSpace::constants) return;  // default of multigrid
   if (mesh::order(mesh.shape) == 2) {

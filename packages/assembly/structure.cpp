@@ -70,6 +70,9 @@ void Structure::declare_fields() {
     for (const auto& name : module.declaration.carries) blocks[context().field(name)].advected = true;
     for (const auto& [field, term] : module.declaration.sizes) unknowns[context().field(field)].row.push_back(term);
   }
+  for (int b = 0; b < n_blocks(); ++b)
+    if (unknowns[b].near_null_space != NearNullSpace::none)
+      set_multigrid(*mesh, unknowns[b].near_null_space, layouts[b], blocks[b]);
 }
 
 void Structure::add_block(const Unknown& unknown, const fields::Layout& layout) {
@@ -77,7 +80,6 @@ void Structure::add_block(const Unknown& unknown, const fields::Layout& layout) 
   block.enriches = unknown.enriches;
   block.condensed_into = unknown.condensed_into;
   block.balance = unknown.balance;
-  if (unknown.near_null_space != NearNullSpace::none) set_multigrid(*mesh, unknown.near_null_space, layout, block);
   blocks.push_back(block);
 }
 

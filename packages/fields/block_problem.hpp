@@ -37,9 +37,13 @@ struct Block {
   Real residual_scale;                 ///< typical size of a row under the present loads
   RCP<const MultiVector> coordinates;  ///< [owned entity, dim], m; null if not used by multigrid
   Modes near_null_space;               ///< empty if not used by multigrid
-  /// For elements of order 2: interpolation from the unknowns of order 1 to those of the block. Multigrid then starts
-  /// from order 1, and coordinates and near_null_space are those of order 1. Null: multigrid starts from the block.
+  /// Interpolation from the unknowns of a first coarse space to those of the block: from order 1 to order 2, or from
+  /// corners to facets. Multigrid then starts from the coarse space, and coordinates and near_null_space are those of
+  /// its unknowns. Null: multigrid starts from the block.
   RCP<const CrsMatrix> interpolation = {};
+  /// Disjoint sets of owned unknowns with strong couplings that multigrid does not represent. With an interpolation
+  /// and one component, the smoother of the block solves for each set exactly.
+  std::vector<std::vector<LocalIndex>> patches = {};
   std::string enriches = "";        ///< block enriched by this one; multigrid smooths both together
   std::string condensed_into = "";  ///< its matrix is nearly diagonal: preconditioners eliminate it into this block
   bool advected = false;            ///< advected by a flow: its matrix may be far from symmetric

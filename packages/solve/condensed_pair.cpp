@@ -70,7 +70,7 @@ CondensedPair::CondensedPair(const BlockOptions& options, const std::vector<Bloc
       first_(pair[0]),
       second_(pair[1].name),
       n_cycles_(takes_flow_order(options, pair[0]) ? 1 : 2),
-      multigrid_(make_multigrid(options, {pair[0]})) {}
+      multigrid_(make_cycle(options, {pair[0]})) {}
 
 void CondensedPair::describe(Teuchos::ParameterList& blocks) const {
   multigrid_->describe(blocks);

@@ -3,6 +3,10 @@
 #include <Ifpack2_Factory.hpp>
 #include <TpetraExt_TripleMatrixMultiply.hpp>
 
+#include <cmath>
+
+#include "multigrid/patched_smoother.hpp"
+
 namespace sprekk::solve {
 namespace {
 
@@ -12,29 +16,29 @@ using fields::Operator;
 using Teuchos::ParameterList;
 
 /// Returns P^T A P. Its graph omits zeros of A. Collective.
-RCP<CrsMatrix> at_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
+RCP<CrsMatrix> coarse_product(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
   const auto product = rcp(new CrsMatrix(P->getDomainMap(), 0));
   Tpetra::TripleMatrixMultiply::MultiplyRAP(*P, true, *A, false, *P, false, *product);
   return product;
 }
 
 /// Returns P^T A P, or A itself if P is null. Collective.
-RCP<const Matrix> at_order_one(const RCP<const Matrix>& A, const RCP<const CrsMatrix>& P) {
-  return P.is_null() ? A : fields::wrapped(at_order_one(A->crs(), P));
+RCP<const Matrix> coarse_product(const RCP<const Matrix>& A, const RCP<const CrsMatrix>& P) {
+  return P.is_null() ? A : fields::wrapped(coarse_product(A->crs(), P));
 }
 
-/// order_one_matrix: P^T A P with a graph valid for any values of A, called once. fill_order_one: sets its present
-/// values. Both are collective.
-RCP<CrsMatrix> order_one_matrix(const CrsMatrix& A, const RCP<const CrsMatrix>& P) {
+/// coarse_matrix: P^T A P with a graph valid for any values of A, called once. fill_coarse: sets its present values.
+/// Both are collective.
+RCP<CrsMatrix> coarse_matrix(const CrsMatrix& A, const RCP<const CrsMatrix>& P) {
   const auto ones = rcp(new CrsMatrix(A, Teuchos::Copy));
   ones->resumeFill();
   ones->setAllToScalar(1);
   ones->fillComplete(A.getDomainMap(), A.getRangeMap());
-  return at_order_one(ones, P);
+  return coarse_product(ones, P);
 }
 
-void fill_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P, CrsMatrix& product) {
-  const auto present = at_order_one(A, P);
+void fill_coarse(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P, CrsMatrix& product) {
+  const auto present = coarse_product(A, P);
   const auto local = present->getLocalMatrixHost();
   const auto &rows = *present->getRowMap(), &columns = *present->getColMap();
   product.resumeFill();
@@ -52,41 +56,128 @@ void fill_order_one(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P, CrsM
   product.fillComplete(product.getDomainMap(), product.getRangeMap());
 }
 
-RCP<const Operator> gauss_seidel(const RCP<const CrsMatrix>& A) {
-  using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
-  const auto S = Ifpack2::Factory::create<RowMatrix>("RELAXATION", A);
-  ParameterList list;
-  list.set("relaxation: type", "Symmetric Gauss-Seidel");
-  list.set("relaxation: use l1", true);  // converges on any number of ranks
-  S->setParameters(list);
-  S->initialize();
-  S->compute();
-  return S;
+/// Returns P with zero rows for prescribed unknowns, which couple to no others in A. Otherwise A would resist means of
+/// corners that differ from the prescribed values, by sums that aggregates do not represent. Local.
+RCP<const CrsMatrix> without_prescribed(const CrsMatrix& A, const CrsMatrix& P) {
+  const auto result = rcp(new CrsMatrix(P, Teuchos::Copy));
+  const auto from = A.getLocalMatrixHost(), to = result->getLocalMatrixHost();
+  const auto rows = A.getRowMap()->getLocalMap(), columns = A.getColMap()->getLocalMap();
+  for (LocalIndex row = 0, n = from.numRows(); row < n; ++row) {
+    bool couples = false;
+    for (auto k = from.graph.row_map(row); k < from.graph.row_map(row + 1) && !couples; ++k)
+      couples = from.values(k) != 0 && columns.getGlobalElement(from.graph.entries(k)) != rows.getGlobalElement(row);
+    for (auto k = to.graph.row_map(row); k < to.graph.row_map(row + 1) && !couples; ++k) to.values(k) = 0;
+  }
+  return result;
+}
+
+/// Sets the diagonal of empty rows to 1. Local.
+void fill_empty_rows(const CrsMatrix& A) {
+  const auto local = A.getLocalMatrixHost();
+  const auto rows = A.getRowMap()->getLocalMap(), columns = A.getColMap()->getLocalMap();
+  for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
+    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k)
+      if (local.values(k) == 0 && columns.getGlobalElement(local.graph.entries(k)) == rows.getGlobalElement(row))
+        local.values(k) = 1;
+}
+
+/// Returns |b - A M b| / |b| for a vector b that does not depend on the number of ranks, see Multigrid. Collective.
+Real growth(const Operator& A, const Operator& M) {
+  const auto& map = A.getDomainMap();
+  MultiVector b(map, 1), Mb(map, 1), r(map, 1);
+  for (std::size_t i = 0; i < b.getLocalLength(); ++i)
+    b.replaceLocalValue(static_cast<LocalIndex>(i), 0,
+                        std::cos(static_cast<Real>(map->getGlobalElement(static_cast<LocalIndex>(i)))));
+  M.apply(b, Mb);
+  A.apply(Mb, r);
+  r.update(1, b, -1);
+  return r.getVector(0)->norm2() / b.getVector(0)->norm2();
 }
 
 }  // namespace
 
+/// Smoother of the fine level. Vectors have one column.
+class LevelSmoother {
+ public:
+  virtual ~LevelSmoother() = default;
+  /// Prepares the values of a matrix with the same graph. Collective.
+  virtual void update(const WholeMatrix& A) = 0;
+  virtual void before(const MultiVector& b, MultiVector& x) const = 0;  ///< x = S b
+  virtual void after(const MultiVector& b, MultiVector& x) const = 0;   ///< x += S^T (b - A x)
+  /// Reduces the smoothing of a nonsymmetric matrix, if this is possible. Local.
+  virtual bool widen() { return false; }
+};
+
+namespace {
+
+class GaussSeidelSmoother : public LevelSmoother {
+ public:
+  void update(const WholeMatrix& A) override {
+    using RowMatrix = Tpetra::RowMatrix<Real, LocalIndex, GlobalIndex>;
+    A_ = A.crs();
+    const RCP<const RowMatrix> rows = A_;
+    sweep_ = Ifpack2::Factory::create<RowMatrix>("RELAXATION", rows);
+    ParameterList list;
+    list.set("relaxation: type", "Symmetric Gauss-Seidel");
+    list.set("relaxation: use l1", true);  // converges on any number of ranks
+    sweep_->setParameters(list);
+    sweep_->initialize();
+    sweep_->compute();
+  }
+  void before(const MultiVector& b, MultiVector& x) const override { sweep_->apply(b, x); }
+  void after(const MultiVector& b, MultiVector& x) const override {
+    MultiVector r(b, Teuchos::Copy), z(b.getMap(), 1);
+    A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+    sweep_->apply(r, z);  // Ifpack2 cannot add to x
+    x.update(1, z, 1);
+  }
+
+ private:
+  RCP<const CrsMatrix> A_;
+  RCP<Ifpack2::Preconditioner<Real, LocalIndex, GlobalIndex>> sweep_;
+};
+
+class ChebyshevSmoother : public LevelSmoother {
+ public:
+  ChebyshevSmoother(const WholeMatrix& A, const multigrid::RowSets& patches, int degree)
+      : degree_(degree), smoother_(A.matrix(), patches) {}
+  void update(const WholeMatrix& A) override { smoother_.update(A.matrix(), degree_); }
+  void before(const MultiVector& b, MultiVector& x) const override { smoother_.before(b, x); }
+  void after(const MultiVector& b, MultiVector& x) const override { smoother_.after(b, x); }
+  bool widen() override {
+    smoother_.widen();
+    return true;
+  }
+
+ private:
+  int degree_;
+  multigrid::PatchedSmoother smoother_;
+};
+
 class Cycle : public Operator {
  public:
-  Cycle(const LinearSystem& system, RCP<const Operator> smoother, RCP<const Operator> order_one)
+  Cycle(const LinearSystem& system, std::shared_ptr<const LevelSmoother> smoother, RCP<const CrsMatrix> P,
+        RCP<const Operator> coarse)
       : A_(system.joined_operator()),
         smoother_(smoother),
-        order_one_(order_one),
-        P_(system.diagonal.front().block.interpolation),
+        coarse_(coarse),
+        P_(P),
         map_(system.joined->map(0)),
         scale_(system.joined->scale(0)) {}
   RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
   RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
 
   void apply(const MultiVector& b, MultiVector& y, Teuchos::ETransp, Real alpha, Real beta) const override {
-    MultiVector x(b.getMap(), b.getNumVectors()), z(b.getMap(), b.getNumVectors()), r(b, Teuchos::Copy);
-    smoother_->apply(b, x);
-    A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
-    correct(r, x);
-    Tpetra::deep_copy(r, b);
-    A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
-    smoother_->apply(r, z);  // Ifpack2 cannot add to x
-    y.update(alpha, x, alpha, z, beta);
+    MultiVector x(b.getMap(), 1);
+    for (std::size_t v = 0; v < b.getNumVectors(); ++v) {
+      const auto from = b.getVector(v);
+      MultiVector r(*from, Teuchos::Copy);
+      smoother_->before(*from, x);
+      A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+      correct(r, x);
+      smoother_->after(*from, x);
+      y.getVectorNonConst(v)->update(alpha, *x.getVector(0), beta);
+    }
   }
 
  private:
@@ -96,22 +187,24 @@ class Cycle : public Operator {
     const auto to = x.offsetViewNonConst(map_, 0);
     const Real factor = 1 / (scale_ * scale_);
     if (P_.is_null()) {
-      order_one_->apply(*from, *to, Teuchos::NO_TRANS, factor, 1);
+      coarse_->apply(*from, *to, Teuchos::NO_TRANS, factor, 1);
       return;
     }
-    MultiVector b(P_->getDomainMap(), r.getNumVectors()), z(P_->getDomainMap(), r.getNumVectors());
+    MultiVector b(P_->getDomainMap(), 1), z(P_->getDomainMap(), 1);
     P_->apply(*from, b, Teuchos::TRANS);
-    order_one_->apply(b, z);
+    coarse_->apply(b, z);
     P_->apply(z, *to, Teuchos::NO_TRANS, factor, 1);
   }
 
   RCP<const Operator> A_;
-  RCP<const Operator> smoother_;
-  RCP<const Operator> order_one_;
+  std::shared_ptr<const LevelSmoother> smoother_;
+  RCP<const Operator> coarse_;
   RCP<const CrsMatrix> P_;
   RCP<const Map> map_;
   Real scale_;
 };
+
+}  // namespace
 
 bool needs_fine_level(const BlockOptions& options, const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
@@ -119,49 +212,67 @@ bool needs_fine_level(const BlockOptions& options, const std::vector<Block>& blo
 }
 
 FineLevel::FineLevel(const BlockOptions& options, const std::vector<Block>& blocks)
-    : Preconditioner("fine level", blocks.front().name), order_one_(make_multigrid(options, {blocks.front()})) {
+    : Preconditioner("fine level", blocks.front().name),
+      degree_(options.multigrid.value_or(MultigridOptions()).degree),
+      is_scalar_(blocks.size() == 1 && blocks.front().n_components == 1),
+      coarse_(make_multigrid(options, {blocks.front()})) {
   for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
 }
 
 void FineLevel::describe(ParameterList& blocks) const {
-  order_one_->describe(blocks);
+  coarse_->describe(blocks);
   for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
 }
 
 std::vector<SolverCost> FineLevel::costs() const {
   auto all = Preconditioner::costs();
-  all.push_back(order_one_->costs().front());
+  all.push_back(coarse_->costs().front());
   return all;
 }
 
-void FineLevel::set_up_order_one(const LinearSystem& system) {
+void FineLevel::set_up_coarse(const LinearSystem& system) {
   const auto& first = system.diagonal.front();
-  const auto& P = first.block.interpolation;
+  P_ = first.block.interpolation;
+  if (is_scalar_) P_ = without_prescribed(*first.matrix->crs(), *P_);
+  const auto P = P_;
   Bulk bulk;
   if (first.bulk)
-    bulk = [&](const auto& work) { first.bulk([&](const RCP<const Matrix>& A) { work(at_order_one(A, P)); }); };
+    bulk = [&](const auto& work) { first.bulk([&](const RCP<const Matrix>& A) { work(coarse_product(A, P)); }); };
   RCP<const Matrix> matrix = first.matrix;
   if (!P.is_null()) {
     const auto A = first.matrix->crs();
-    if (product_.is_null()) product_ = fields::wrapped(order_one_matrix(*A, P));
-    fill_order_one(A, P, *product_->crs());
+    if (product_.is_null()) product_ = fields::wrapped(coarse_matrix(*A, first.block.interpolation));
+    fill_coarse(A, P, *product_->crs());
+    if (is_scalar_) fill_empty_rows(*product_->crs());
     matrix = product_;
   }
-  order_one_->setup(alone(
-      {.block = first.block, .matrix = matrix, .bulk = bulk, .symmetric = system.symmetric, .careful = first.careful}));
+  auto block = first.block;
+  // unknowns at one point, of both sides and the fracture, would be near each other and far from all others
+  if (is_scalar_ && coarse_->has_cycles()) block.coordinates = Teuchos::null;
+  coarse_->setup(
+      alone({.block = block, .matrix = matrix, .bulk = bulk, .symmetric = system.symmetric, .careful = first.careful}));
 }
 
 void FineLevel::prepare(const LinearSystem& system, SolverCost&) {
-  set_up_order_one(system);
+  set_up_coarse(system);
   renew(system);
 }
 
+/// For nonsymmetric matrices, the interval of the smoother is widened as long as a cycle increases a residual strongly.
 bool FineLevel::renew(const LinearSystem& system) {
+  constexpr Real max_growth = 5;
+  constexpr int max_widenings = 4;
+  const auto& first = system.diagonal.front();
   matrix_.update(system);
-  cycle_ = rcp(new Cycle(system, gauss_seidel(matrix_.crs()), order_one_->inverse()));
+  if (!smoother_ && is_scalar_)
+    smoother_ = std::make_shared<ChebyshevSmoother>(matrix_, first.block.patches, degree_);
+  else if (!smoother_)
+    smoother_ = std::make_shared<GaussSeidelSmoother>();
+  smoother_->update(matrix_);
+  cycle_ = rcp(new Cycle(system, smoother_, P_, coarse_->inverse()));
+  for (int widenings = 0; first.careful && !first.symmetric && widenings < max_widenings; ++widenings)
+    if (growth(*matrix_.matrix(), *cycle_) <= max_growth || !smoother_->widen()) break;
   return true;
 }
-
-RCP<const Operator> FineLevel::made() const { return cycle_; }
 
 }  // namespace sprekk::solve

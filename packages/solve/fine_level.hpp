@@ -1,4 +1,4 @@
-// Level above multigrid for node fields of order 2.
+// Level above multigrid for blocks with a first coarse space: node fields of order 2, and fields on facets.
 #pragma once
 
 #include "solve/preconditioner.hpp"
@@ -6,35 +6,40 @@
 namespace sprekk::solve {
 
 /// Returns whether multigrid needs a finer level for these blocks, of which all except the first enrich the first.
-/// Reasons: order 2, or enriching functions with MueLu.
+/// Reasons: an interpolation, or enriching functions with MueLu.
 bool needs_fine_level(const BlockOptions& options, const std::vector<Block>& blocks);
 
-class Cycle;
+class LevelSmoother;
 
 /// Symmetric two-level cycle for a system of such blocks,
-///   x = S b,  x += P K P^T (b - A x),  x += S (b - A x).
-/// K is multigrid of order 1. P is the interpolation of the first block, zero in enriching blocks. S is a symmetric
-/// Gauss-Seidel sweep.
+///   x = S b,  x += P K P^T (b - A x),  x += S^T (b - A x).
+/// K is multigrid on P^T A P. P is the interpolation of the first block, zero in enriching blocks. S is a symmetric
+/// Gauss-Seidel sweep. For a single block with one unknown per entity, it is multigrid::PatchedSmoother with the
+/// patches of the block.
 class FineLevel : public Preconditioner {
  public:
   FineLevel(const BlockOptions& options, const std::vector<Block>& blocks);
 
-  bool has_cycles() const override { return order_one_->has_cycles(); }
-  int coarse_size() const override { return order_one_->coarse_size(); }
+  bool has_cycles() const override { return coarse_->has_cycles(); }
+  int coarse_size() const override { return is_scalar_ ? multigrid::Options().coarse_size : coarse_->coarse_size(); }
   std::vector<SolverCost> costs() const override;
   void describe(Teuchos::ParameterList& blocks) const override;
 
  private:
   void prepare(const LinearSystem& system, SolverCost& cost) override;
   bool renew(const LinearSystem& system) override;
-  RCP<const fields::Operator> made() const override;
-  void set_up_order_one(const LinearSystem& system);
+  RCP<const fields::Operator> made() const override { return cycle_; }
+  void set_up_coarse(const LinearSystem& system);
 
   std::vector<std::string> enriching_;  // names of the enriching blocks
-  std::unique_ptr<Preconditioner> order_one_;
+  int degree_;                          // of Chebyshev's polynomial
+  bool is_scalar_;                      // a single block with one unknown per entity
+  std::unique_ptr<Preconditioner> coarse_;
+  RCP<const CrsMatrix> P_;     // interpolation; null: none
   RCP<const Matrix> product_;  // P^T A P
   WholeMatrix matrix_;
-  RCP<const Cycle> cycle_;
+  std::shared_ptr<LevelSmoother> smoother_;
+  RCP<const fields::Operator> cycle_;
 };
 
 }  // namespace sprekk::solve

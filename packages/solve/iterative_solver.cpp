@@ -123,8 +123,7 @@ class IterativeSolver : public LinearSolver {
  private:
   bool is_scaled(const DiagonalBlock& diagonal) const {
     const auto& block = diagonal.block;
-    const bool alone = blocks_.size() == 1 && block.n_components == 1 && block.near_null_space.n() == 0 &&
-                       block.interpolation.is_null();
+    const bool alone = blocks_.size() == 1 && block.n_components == 1 && block.near_null_space.n() == 0;
     return (alone || block.balance) && !diagonal.matrix.is_null();
   }
 

@@ -24,11 +24,17 @@ using Teuchos::ParameterList;
 /// Smallest Chebyshev degree if enriching functions are smoothed as well.
 constexpr int degree_with_enrichment = 6;
 
+/// Number of unknowns up to which a level of corners of facets is solved directly. Aggregates represent constants in
+/// single fractures less well, and factors of matrices with one unknown per node are small.
+constexpr int corner_coarse_size = 4000;
+
 /// Multigrid on the nodes of a block. Blocks that enrich it take part in smoothing on the finest level.
 class NodeMultigrid : public Preconditioner {
  public:
-  NodeMultigrid(const multigrid::Options& options, const std::vector<Block>& blocks)
+  NodeMultigrid(const MultigridOptions& options, const std::vector<Block>& blocks)
       : Preconditioner("multigrid", blocks.front().name), options_(options) {
+    const bool at_corners = blocks.front().n_components == 1 && !blocks.front().interpolation.is_null();
+    options_.coarse_size = options.coarsest.value_or(at_corners ? corner_coarse_size : options.coarse_size);
     for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
     if (!enriching_.empty()) options_.finest_degree = degree_with_enrichment;
   }
@@ -221,9 +227,7 @@ std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, con
   if (options.type == "Ifpack2") return make_ifpack2(options.ifpack2, blocks);
   if (options.type == "Gauss-Seidel") return make_gauss_seidel(blocks);
   if (options.type == "ILU" && !is_condensed_pair(blocks)) return make_advected(first.name, nullptr);
-  if (!first.coordinates.is_null() && enrich_first(blocks))
-    return needs_fine_level(options, blocks) ? std::make_unique<FineLevel>(options, blocks)
-                                             : make_multigrid(options, blocks);
+  if (!first.coordinates.is_null() && enrich_first(blocks)) return make_cycle(options, blocks);
   if (is_condensed_pair(blocks)) return std::make_unique<CondensedPair>(options, blocks);
   if (options.type == "MueLu") return make_muelu(options.muelu, blocks);
   if (options.type == "multigrid")
@@ -309,14 +313,17 @@ bool takes_flow_order(const BlockOptions& options, const Block& first) {
 }
 
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks) {
+  if (takes_muelu(options, blocks.front())) return make_muelu(options.muelu, blocks);
+  return std::make_unique<NodeMultigrid>(options.multigrid.value_or(MultigridOptions()), blocks);
+}
+
+std::unique_ptr<Preconditioner> make_cycle(const BlockOptions& options, const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
   if (options.type == "ILU") return make_advected(first.name, nullptr);
-  std::unique_ptr<Preconditioner> cycles;
-  if (takes_muelu(options, first))
-    cycles = make_muelu(options.muelu, blocks);
-  else
-    cycles = std::make_unique<NodeMultigrid>(options.multigrid.value_or(MultigridOptions()), blocks);
-  return takes_flow_order(options, first) ? make_advected(first.name, std::move(cycles)) : std::move(cycles);
+  std::unique_ptr<Preconditioner> cycle = needs_fine_level(options, blocks)
+                                              ? std::make_unique<FineLevel>(options, blocks)
+                                              : make_multigrid(options, blocks);
+  return takes_flow_order(options, first) ? make_advected(first.name, std::move(cycle)) : std::move(cycle);
 }
 
 std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks) {

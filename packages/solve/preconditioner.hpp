@@ -68,9 +68,11 @@ bool takes_muelu(const BlockOptions& options, const Block& first);
 /// Returns whether a block has incomplete factors in the order of a flow: as requested, or by default if the block is
 /// advected and has no options of multigrid.
 bool takes_flow_order(const BlockOptions& options, const Block& first);
-/// Returns multigrid for the first block, by its coordinates and near-null space, and for blocks that enrich it; or the
-/// method for an advected block. MueLu solves for one block only.
+/// Returns multigrid for the first block, by its coordinates and near-null space, and for blocks that enrich it. MueLu
+/// solves for one block only.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks);
+/// Returns the same, below a FineLevel if the blocks need one, and with make_advected() for an advected block.
+std::unique_ptr<Preconditioner> make_cycle(const BlockOptions& options, const std::vector<Block>& blocks);
 
 /// Return methods for the matrix of one block, or of several joined blocks.
 std::unique_ptr<Preconditioner> make_muelu(const Teuchos::ParameterList& given, const std::vector<Block>& blocks);

@@ -6,8 +6,8 @@ namespace sprekk::solve {
 void MultigridOptions::describe(base::Section& section) {
   section.entry(degree, "degree", "-", base::at_least(1),
                 "degree of the Chebyshev smoother (Adams et al. 2003); higher on the finest level in flat cells");
-  section.entry(coarse_size, "coarsest level", "-", base::at_least(1),
-                "number of unknowns up to which a level is solved directly");
+  section.entry(coarsest, "coarsest level", "-", base::at_least(1),
+                "number of unknowns up to which a level is solved directly; absent: 300, for fields on facets 4000");
   section.hint({"least of a rank"}, "Did you mean \"minimum per rank\"?");
   section.entry(minimum_per_rank, "minimum per rank", "-", base::at_least(1),
                 "minimum mean number of matrix entries per rank; a smaller level moves to fewer ranks");

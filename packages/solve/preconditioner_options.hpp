@@ -16,6 +16,8 @@ class Section;
 namespace sprekk::solve {
 
 struct MultigridOptions : multigrid::Options {
+  std::optional<int> coarsest;  ///< replaces coarse_size; absent: 300, or 4000 for fields on facets
+
   void describe(base::Section& section);
 };
 

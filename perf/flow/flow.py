@@ -14,6 +14,7 @@ from perf.krylov import linear
 MESHES = {  # shape: scene, cells along an edge for about 1e4, 1e5 and 1e6 cells
     "triangles": ("flow_2d", "triangle", (72, 222, 708)), "quadrilaterals": ("flow_2d", "quadrilateral", (102, 318, 1002)),
     "tetrahedra": ("flow_3d", "tetrahedron", (12, 24, 54)), "hexahedra": ("flow_3d", "hexahedron", (24, 48, 102))}
+NETWORKS = {"traces": "flow_traces", "discs": "flow_discs"}  # meshes of gmsh with flat cells
 STEADY = ("Time.maximum halvings=0",)  # shorter steps have no effect
 BOUNDS = {"krylov_max": 15, "krylov_growth": 0.3, "failures": 0, "exponent": 1.1}
 FORMATS = {"krylov_max": ".4g", "krylov_growth": ".2f", "exponent": ".2f"}
@@ -52,6 +53,8 @@ CASES = {  # functions of the dimension that return entries
     "anisotropy 100": anisotropic,
     "all": lambda d: (*anisotropic(d)[:1], *rocks(1e-5), *joints(1e10, 1e10, ("joint",)), *joints(1e-10, 1e-10, ("other joint",))),
 }
+
+NETWORK_CASES = {"cubic law": (), "tight across": ("Materials.joint.normal permeability=1e-26",)}
 
 
 @dataclass
@@ -99,19 +102,31 @@ def draw(rows, file):
     figure.savefig(file, dpi=150)
 
 
+def network(mesh, case):
+    """Scene, entries and size."""
+    return NETWORKS[mesh], NETWORK_CASES[case], "gmsh"
+
+
+def box(mesh, case, level):
+    """Scene, entries and size: cells along an edge."""
+    scene, shape, counts = MESHES[mesh]
+    d = 2 if scene == "flow_2d" else 3
+    return scene, (f"Mesh.cell={shape}", f"Mesh.cells={{{', '.join([str(counts[level])] * d)}}}", *CASES[case](d)), counts[level]
+
+
 def main(words):
     parser = common.parser("flow", __doc__)
     parser.add_argument("--largest", type=float, default=1.1e6, metavar="N", help="no mesh with more cells than this (1.1e6)")
     options = parser.parse_args(words)
-    runs = [(mesh, case, level) for level in range(1 if options.quick else 3) for mesh in MESHES for case in CASES]
     per_cell = {"triangles": (2, 2), "quadrilaterals": (1, 2), "tetrahedra": (6, 3), "hexahedra": (1, 3)}
-    runs = [run for run in runs if per_cell[run[0]][0] * MESHES[run[0]][2][run[2]]**per_cell[run[0]][1] <= options.largest]
+    runs = [(network, case, 0) for network in NETWORKS for case in NETWORK_CASES]
+    runs += [(mesh, case, level) for level in range(1 if options.quick else 3) for mesh in MESHES for case in CASES
+             if per_cell[mesh][0] * MESHES[mesh][2][level]**per_cell[mesh][1] <= options.largest]
     rows = table.Series(COLUMNS, 40)
     for mesh, case, level in common.matching(options, runs, lambda run: f"{run[0]}, {run[1]}"):
-        scene, shape, counts = MESHES[mesh]
-        d = 2 if scene == "flow_2d" else 3
-        sets = (*STEADY, f"Mesh.cell={shape}", f"Mesh.cells={{{', '.join([str(counts[level])] * d)}}}", *CASES[case](d))
-        run = linear.run(options, sets, re.sub(r"[^\w.+-]+", "_", f"{mesh} {case} {counts[level]}"), scene=f"performance/{scene}.xml", residual=first_residual)
-        rows.run(f"{mesh}, {case}, {counts[level]}", run, Row(mesh, case, level, run))
+        scene, sets, size = network(mesh, case) if mesh in NETWORKS else box(mesh, case, level)
+        run = linear.run(options, (*STEADY, *sets), re.sub(r"[^\w.+-]+", "_", f"{mesh} {case} {size}"), scene=f"performance/{scene}.xml",
+                         residual=first_residual)
+        rows.run(f"{mesh}, {case}, {size}", run, Row(mesh, case, level, run))
     rows.finish(options, summary, FORMATS, draw, BOUNDS)
     return int(bool(rows.failed))

@@ -1,0 +1,100 @@
+#include "multigrid/patched_smoother.hpp"
+
+#include <Teuchos_LAPACK.hpp>
+
+#include <algorithm>
+
+#include "base/check.hpp"
+#include "base/over_ranks.hpp"
+
+namespace sprekk::multigrid {
+namespace {
+
+ConstView<Real*> column_of(const MultiVector& x) {
+  return Kokkos::subview(x.getLocalViewDevice(Tpetra::Access::ReadOnly), Kokkos::ALL(), 0);
+}
+
+/// Copies the owned values of x [all] to the result.
+void give(const View<Real*>& x, MultiVector& result) {
+  const auto to = Kokkos::subview(result.getLocalViewDevice(Tpetra::Access::OverwriteAll), Kokkos::ALL(), 0);
+  Kokkos::deep_copy(to, Kokkos::subview(x, std::pair<std::size_t, std::size_t>(0, to.extent(0))));
+}
+
+}  // namespace
+
+void Patches::update(const NodeMatrix& A) {
+  std::vector<LocalIndex> place(A.graph.columns->n_all(), -1);  // [column] number in its set
+  for (std::size_t p = 0; p < sets_.size(); ++p) {
+    const auto& rows = sets_[p];
+    const int n = static_cast<int>(rows.size());
+    for (int i = 0; i < n; ++i) place[rows[i]] = i;
+    auto& factors = factors_[p];
+    factors.assign(static_cast<std::size_t>(n) * n, 0);
+    for (int i = 0; i < n; ++i)
+      for (std::size_t k = A.graph.start(rows[i]); k < A.graph.start(rows[i] + 1); ++k)
+        if (const LocalIndex j = place[A.graph.column(k)]; j >= 0)
+          factors[static_cast<std::size_t>(j) * n + i] = A.value(k);
+    pivots_[p].resize(n);
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().GETRF(n, n, factors.data(), n, pivots_[p].data(), &info);
+    SPREKK_CHECK(info == 0, "the smoother of multigrid: the matrix of a patch of {} unknowns is singular", n);
+    for (const LocalIndex row : rows) place[row] = -1;
+  }
+}
+
+void Patches::correct(const NodeMatrix& A, const ConstView<Real*>& b, const View<Real*>& x) const {
+  A.graph.columns->exchange(x, 1);
+  residual_.clear();
+  for (const auto& rows : sets_)
+    for (const LocalIndex row : rows) {
+      Real r = b(row);
+      for (std::size_t k = A.graph.start(row); k < A.graph.start(row + 1); ++k) r -= A.value(k) * x(A.graph.column(k));
+      residual_.push_back(r);
+    }
+  auto* of_set = residual_.data();
+  for (std::size_t p = 0; p < sets_.size(); ++p) {
+    const int n = static_cast<int>(sets_[p].size());
+    int info = 0;
+    Teuchos::LAPACK<int, Real>().GETRS('N', n, 1, factors_[p].data(), n, pivots_[p].data(), of_set, n, &info);
+    for (int i = 0; i < n; ++i) x(sets_[p][i]) += of_set[i];
+    of_set += n;
+  }
+}
+
+std::size_t Patches::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& factors : factors_) sum += factors.size() * sizeof(Real);
+  return sum;
+}
+
+PatchedSmoother::PatchedSmoother(const RCP<const Matrix>& A, RowSets sets)
+    : A_(node_matrix(*A, 1)),
+      chebyshev_(A_),
+      patches_(std::move(sets)),
+      has_patches_(base::on_any_rank(*A->row_map()->getComm(), !patches_.empty())),
+      x_("x", A_.graph.columns->n_all()),
+      r_("r", A_.graph.n_rows()) {}
+
+void PatchedSmoother::update(const RCP<const Matrix>& A, int degree) {
+  A_.value = node_matrix(*A, 1).value;
+  chebyshev_.update(A_, degree);
+  base::collectively(*A->row_map()->getComm(), [&] { patches_.update(A_); });
+}
+
+void PatchedSmoother::before(const MultiVector& b, MultiVector& x) const {
+  const auto from = column_of(b);
+  chebyshev_.apply(from, x_, false);
+  if (has_patches_) patches_.correct(A_, from, x_);
+  give(x_, x);
+}
+
+void PatchedSmoother::after(const MultiVector& b, MultiVector& x) const {
+  const auto from = column_of(b), start = column_of(x);
+  Kokkos::deep_copy(Kokkos::subview(x_, std::pair<std::size_t, std::size_t>(0, start.extent(0))), start);
+  if (has_patches_) patches_.correct(A_, from, x_);
+  residual(A_, x_, from, r_);
+  chebyshev_.apply(r_, x_, true);
+  give(x_, x);
+}
+
+}  // namespace sprekk::multigrid
