@@ -13,6 +13,7 @@ from pathlib import Path
 from progress import doing
 from shapes import NetworkError
 
+POOR, MAX_POOR = 0.02, 5  # quality of cells for which repairs leave out a fracture, and rounds of such repairs
 MAX_DRAWN = 0.2  # maximum share of random fractures drawn again; a larger share would change the statistics
 
 
@@ -61,33 +62,63 @@ def known_report(mesh, report, print_of_input):
 def made(network):
     """Returns plan, sizes and mesh."""
     import checks
+    import improve
     import mesher
     from plan import Plan
     from sizes import Sizes
     with doing(f"intersecting {len(network.fractures)} fractures"):
         plan = Plan(network)
-    with doing(f"checking angles and distances of {len(plan.edges)} edges of fractures"):
-        checks.check(plan)
+    if network.repair != "join":
+        with doing(f"checking angles and distances of {len(plan.edges)} edges of fractures"):
+            checks.check(plan)
     with doing(f"computing cell sizes at {len(plan.edges)} edges of fractures"):
         sizes = Sizes(plan)
-    with doing(f"generating a mesh of about {sum(sizes.expected_cells().values()):.1g} cells"):
-        return plan, sizes, mesher.make_mesh(plan, sizes)
+    with doing(f"generating a mesh of about {sizes.expected_number():.2g} cells"):
+        mesh = mesher.make_mesh(plan, sizes)
+    if network.repair == "join":
+        improve.improve(mesh, plan.dim)
+    return plan, sizes, mesh
+
+
+def refuse_poor(plan, mesh):
+    """Raises an error with the fractures at cells of poor quality in 3D."""
+    import numpy
+    import report
+    quality, _ = report.gamma(mesh.points, mesh.cells)
+    found = {}
+    for k in numpy.flatnonzero(quality < POOR) if plan.dim == 3 else ():
+        at = numpy.isin(mesh.faces, mesh.cells[k]).any(axis=1)
+        names = {plan.owners[owner].name for owner in set(mesh.face_owner[at].tolist()) if plan.is_fracture(owner)}
+        if names:
+            found.setdefault(tuple(sorted(names)), quality[k])
+    if found:
+        raise NetworkError("\n".join(f"{' and '.join(names)}: a cell has the quality {worst:.3g}" for names, worst in found.items()),
+                           features=list(found))
 
 
 def made_of(text, network):
     """Returns plan, sizes and mesh, where random fractures may be drawn again.
 
-    If fractures cannot be meshed together, the last random one of each conflict is drawn again."""
+    If fractures cannot be meshed together, the last random one of each conflict is drawn again. Repairs leave out the
+    smallest one instead."""
     from description import Network
-    again = {}
+    again, poor_rounds = {}, 0
     while True:
         try:
             plan, *rest = made(network)
+            if network.repair == "join" and poor_rounds < MAX_POOR:
+                poor_rounds += 1
+                refuse_poor(plan, rest[-1])
             plan.repairs[:0] = [f"drawn again{f' {times} times' if times > 1 else ''} due to a conflict with other fractures: {name}"
                                 for name, times in again.items()]
             return plan, *rest
         except NetworkError as error:
             drawn = {name: k for k, name in enumerate(network.at_random)}
+            if network.repair != "report" and all(network.conflicting(names) for names in error.features or [()]):
+                network.resolved.clear()
+                for names in error.features:
+                    network.resolve(names)
+                continue
             last = {max((name for name in names if name in drawn), key=drawn.get, default=None) for names in error.features}
             if not last or None in last or sum(again.values()) + len(last) > max(1, MAX_DRAWN * len(drawn)):
                 raise
@@ -111,15 +142,18 @@ def make(options):
     import report
     plan, sizes, mesh = made_of(text, network)
     groups = msh_file.groups_of(mesh, plan)
+    plan.network.journal.compare(mesh, plan)
     options.output.parent.mkdir(parents=True, exist_ok=True)
     unfinished = options.output.with_name(f"{options.output.name}.{os.getpid()}")
     try:
         msh_file.write(unfinished, mesh.points, groups, msh_file.singles_of(plan))
         content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(),
-                   "warnings": checks.near_fractures(plan), **report.of_mesh(mesh, plan, sizes)}
+                   "warnings": [] if network.repair == "join" else checks.near_fractures(plan),
+                   **report.of_mesh(mesh, plan, sizes)}
         unfinished.replace(options.output)
     finally:
         unfinished.unlink(missing_ok=True)
+    plan.network.journal.write(options.output.with_suffix(options.output.suffix + ".csv"), plan.dim)
     report_file.write_text(json.dumps(content, indent=1) + "\n")
     if options.picture:
         import picture

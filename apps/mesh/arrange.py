@@ -11,9 +11,10 @@ MAX_CROSSINGS = 2 * 10**5  # some minutes
 def near_pairs(low, high, reach):
     """Returns the pairs i < j, as two arrays, of boxes closer than `reach` in every direction.
 
-    Error beyond MAX_PAIRS."""
-    order = np.argsort(low[:, 0], kind="stable")
-    low, high = low[order] - 0.5 * reach, high[order] + 0.5 * reach
+    With an array the reach of a pair is the mean of both. Error beyond MAX_PAIRS."""
+    half = 0.5 * np.broadcast_to(reach, len(low))[:, None]
+    order = np.argsort(low[:, 0] - half[:, 0], kind="stable")
+    low, high = (low - half)[order], (high + half)[order]
     last = np.searchsorted(low[:, 0], high[:, 0], side="right")
     first, second, n = [], [], 0
     for i in range(len(low)):
@@ -24,7 +25,7 @@ def near_pairs(low, high, reach):
         n += len(j)
         if n > MAX_PAIRS:
             raise NetworkError(f"the network is too dense: more than {MAX_PAIRS:g} pairs of its {len(low)} edges may be closer than "
-                               f"{reach:.3g} m; remove fractures, or choose smaller cells (\"relative size\", \"size\")")
+                               f"{np.max(reach):.3g} m; remove fractures, or choose smaller cells (\"relative size\", \"size\")")
     first, second = (order[np.concatenate(k).astype(int)] if k else np.array([], int) for k in (first, second))
     return np.minimum(first, second), np.maximum(first, second)
 

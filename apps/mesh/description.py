@@ -2,18 +2,26 @@
 import csv
 import os
 import xml.etree.ElementTree as xml
+from collections import Counter
+from dataclasses import replace
 from itertools import count
+from pathlib import Path
 
 import exchange
 import numpy as np
+from discs import has_discs, read_discs
 from domain import Body, rows
 from fab import read_fab
 from generator import at_random
-from parts import joined_parts
-from shapes import MAXIMUM, Errors, Feature, NetworkError, at, ellipse, refuse
-from tables import Table, has_points, read_table
+from journal import Journal, measure_of
+from parts import joined_parts, separate_parts
+from shapes import MAXIMUM, Errors, Feature, NetworkError, Plane, at, diameter, ellipse, refuse
+from surface_files import read_dfnworks, read_gocad
+from surfaces import Surface, angle_of_planes, trimmed
+from tables import Table, complete, has_ellipses, has_points, read_table
 
 MAX_FRACTURES = 10**5
+TRIMMED, TRIMMED_ANGLE, MIN_PART = 2.0, 10.0, 0.4  # distance in tolerances, degrees, share of the area: parts cut off
 MAX_DIAGONALS = 1e6  # largest distance of a point from the centre of the domain, in diagonals
 
 READ = {"int": int, "double": float, "bool": lambda text: text == "true", "string": str}
@@ -66,23 +74,28 @@ class Network:
         self.again, self.at_random = again or {}, []
         self.entries = as_dictionary(xml.fromstring(text))
         self.files = []  # input files
-        self.leaves_out = self.entries.get("unusable fractures") == "left out"
-        self.left_out = []  # lines of the report
+        self.repair = self.entries.get("repair", "report")  # or join, drop
+        self.leaves_out = self.entries.get("unusable fractures") == "left out" or self.repair != "report"
+        self.resolved, self.trimmed = set(), set()  # names of fractures changed by repairs
+        self.left_out, self.empty = [], []  # lines of the report; (file, line) of features without geometry
         self.tables = {(kind, name): self.table(content) for kind in ("fractures", "constraints")
                        for name, content in self.entries.get(kind, {}).items() if "file" in content}
         self.domain = self.body("domain", self.domain_entries(), "boundary")
         self.dim = self.domain.dim
         self.regions = [self.body(f"regions > {name}", content, "region", name)
                         for name, content in self.entries.get("regions", {}).items()]
+        self.journal = Journal(self.domain.size)
         self.fractures = self.features("fractures", "fracture")
+        self.journal.start(self.fractures, self.empty)
         self.constraints = self.features("constraints", "constraint")
         self.check_names()
-        self.check_singles()
+        (self.check_singles if self.repair == "report" else self.rename_singles)()
         self.check_boxes()
         self.check_dimensions()
         self.check_reach()
         self.set_sizes()
-        self.joined = self.left_out + joined_parts(self.fractures, self.dim, self.tolerance)  # lines of the report
+        parts = separate_parts if self.repair != "report" else joined_parts
+        self.joined = self.left_out + parts(self.fractures, self.dim, self.tolerance)  # lines of the report
 
     def place(self, path):
         return f"Sprekk > Mesh file > network > {path}"
@@ -97,19 +110,53 @@ class Network:
         of_domain = ("lines" if len(domain["lower corner"]) == 2 or domain["corners"] else "polygons") if domain else None
         dim, layers = 2 if of_domain == "lines" else 3, content.get("layers", [])
         if exchange.is_exchange(path) and "format" not in content:
-            table = Table(exchange.read(path, dim, layers, self.left_out if self.leaves_out else None, "unit" in content))
+            unused = [] if self.leaves_out else None
+            table = Table(exchange.read(path, dim, layers, unused, "unit" in content))
+            self.left_out += unused or []
+            self.empty += [(content["file"], line.removeprefix("left out: ")) for line in unused or []]
         else:
             if layers:
                 raise NetworkError(f"{path}: has no layers, but its set has \"layers\"; only formats of GDAL have layers", [path])
-            kind = content.get("format") or ("fab" if content["file"].lower().endswith(".fab") else None)
-            if kind is None:
-                kind = "points" if of_domain and has_points(path, dim) else of_domain
-            table = read_fab(path) if kind == "fab" else read_table(path, kind, dim, self.entries.get("entries of joints", ()))
+            table = self.read(path, content, of_domain, dim)
         for row in table.fractures:
             row.points = row.points * content.get("unit", 1.0)
+        if content.get("window"):
+            table.fractures = [part for row in table.fractures for part in self.cropped(row, content)]
         if table.box is not None:
             table.box = [[x * content.get("unit", 1.0) for x in corner] for corner in table.box]
         return table
+
+    def read(self, path, content, of_domain, dim):
+        """Returns the table of a file without GDAL. Its format is given, or by the ending, the titles and the domain."""
+        kind, ending = content.get("format"), Path(path).suffix.lower()
+        corners, names = content.get("corners"), self.entries.get("entries of joints", ())
+        if kind is None:
+            kind = {".fab": "fab", ".dat": "dfnworks", ".ts": "gocad"}.get(ending)
+        if of_domain != "lines" and kind in (None, "ellipses"):
+            kind = "discs" if has_discs(path) else "ellipses" if has_ellipses(path) else kind
+        if kind is None:
+            kind = "points" if of_domain and has_points(path, dim) else of_domain
+        readers = {"fab": read_fab, "dfnworks": lambda path: complete(read_dfnworks(path), path),
+                   "gocad": lambda path: complete(read_gocad(path), path),
+                   "discs": lambda path: complete(read_discs(path, corners), path)}
+        return readers[kind](path) if kind in readers else read_table(path, kind, dim, names, corners or 32)
+
+    def cropped(self, row, content):
+        """Returns the parts of a row in the window of its set."""
+        window = np.array(content["window"]).reshape(2, -1)
+        if window.shape[1] != row.points.shape[1] or not (window[1] > window[0]).all():
+            raise NetworkError(f"{self.place('fractures')}: \"window\" is {content['window']}, must be the lowest and then the highest "
+                               f"{row.points.shape[1]} coordinates")
+        box = Body("window", {"lower corner": list(window[0]), "upper corner": list(window[1]), "corners": [], "faces": {}}, "region")
+        if box.dim == 2:
+            parts = box.clip_line(row, 1e-9 * box.size)
+        else:
+            whole = Surface.whole(Feature("constraint", "", row.title, opened(row.points)))
+            parts = [part.rings[0] for part in box.clip_polygon(whole, 1e-9 * box.size)]
+        if not parts:
+            self.left_out.append(f"left out: {row.title}: outside of the window")
+            self.empty.append((content["file"], f"{row.title}: outside of the window"))
+        return [replace(row, points=part) for part in parts]
 
     def domain_entries(self):
         if "domain" in self.entries:
@@ -135,7 +182,7 @@ class Network:
                                          f"{name} {one}", of))
             for one, e in content.get("ellipses", {}).items():
                 found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"',
-                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"]),
+                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"], content.get("corners", 32)),
                                      f"{name} {one}", "ellipses"))
             number = len(found) + content.get("random", {}).get("number", 0)
             if number > MAX_FRACTURES:
@@ -190,6 +237,58 @@ class Network:
                 errors.lines.append(f"{feature.name}: has the name \"{name}\", as {one.name}, but different values in additional columns")
         errors.throw(self.files)
 
+    def rename_singles(self):
+        """Makes the names of single fractures valid and unique, except for parts of one fracture."""
+        first, n = {}, Counter()
+        for feature in self.fractures:
+            feature.single = name = "".join(c if c.isprintable() else " " for c in feature.single.replace('"', "'"))
+            one = first.setdefault(name, feature)
+            if (one.group, one.source, one.properties) == (feature.group, feature.source, feature.properties):
+                continue
+            while feature.single in first:
+                n[name] += 1
+                feature.single = f"{name} ({n[name] + 1})"
+            first[feature.single] = feature
+            self.journal.note(feature, f"renamed, since another fracture has the name \"{name}\"")
+
+    def conflicting(self, names):
+        """Returns the fractures with these names in messages, the smallest first."""
+        found = [one for one in self.fractures if one.name in names]
+        return sorted(found, key=lambda one: (self.journal.of(one).given, one.name))
+
+    def resolve(self, names):
+        """Cuts off a part of the smallest fracture of a conflict, or leaves it out, unless one of them is changed already."""
+        if any(name in self.journal.why or name in self.resolved for name in names):
+            return
+        smallest, *larger = self.conflicting(names)
+        others = " and ".join(name for name in names if name != smallest.name)
+        self.resolved.update(names)
+        if self.repair == "join" and self.dim == 3 and len(larger) == 1 and len(names) == 2:
+            part = self.part_beside(smallest, larger[0])
+            if part is not None:
+                lost = measure_of(smallest.points) - measure_of(part)
+                self.journal.note(smallest, f"{lost:.3g} m^2 are cut off at a small angle to {others}")
+                smallest.points = part
+                return
+        self.journal.leave_out(smallest, f"in conflict with {others or 'itself'}", "conflict")
+        self.fractures = [one for one in self.fractures if one is not smallest]
+
+    def part_beside(self, smallest, other):
+        """Returns the larger part of a fracture, without that near another at a small angle, or None."""
+        if angle_of_planes(Plane(smallest.points), Plane(other.points)) > TRIMMED_ANGLE or smallest.name in self.trimmed:
+            return None
+        part = trimmed(smallest.points, other.points, TRIMMED * self.tolerance)
+        self.trimmed.add(smallest.name)
+        if part is None or measure_of(part) < MIN_PART * measure_of(smallest.points):
+            return None
+        part = part[np.linalg.norm(part - np.roll(part, 1, axis=0), axis=1) > self.tolerance]
+        return part if len(part) > 2 else None
+
+    def tolerance_of_repairs(self):
+        """Returns the smaller of 1e-3 of the diagonal and 1/20 of the median length (3D: diameter) in the domain."""
+        sizes = [measure_of(one.points) if self.dim == 2 else diameter(one.points) for one in self.fractures]
+        return min(1e-3 * self.domain.size, 0.05 * float(np.median(sizes)) if sizes else np.inf)
+
     def check_dimensions(self):
         for body in self.regions:
             if body.dim != self.dim:
@@ -211,7 +310,7 @@ class Network:
 
     def set_sizes(self):
         e, diagonal = self.entries, self.domain.size
-        self.tolerance = e.get("tolerance", 1e-6 * diagonal)
+        self.tolerance = e.get("tolerance", 1e-6 * diagonal if self.repair == "report" else self.tolerance_of_repairs())
         if self.tolerance > 0.01 * diagonal:
             raise NetworkError(f"{self.place('tolerance')}: is {self.tolerance:g} m, must be at most a hundredth of the domain's "
                                f"diagonal, {0.01 * diagonal:g} m")

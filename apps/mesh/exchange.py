@@ -127,15 +127,27 @@ def system_of(path, crs, osr):
     return system
 
 
-def refuse_degrees(path, layer, members, osr):
-    """Rejects coordinates in other units than metres. `members` are those of a GeoJSON file, else None."""
+def are_degrees(layer):
+    """Returns whether all coordinates of a layer could be longitudes and latitudes."""
+    if layer.GetFeatureCount() == 0:
+        return True
+    west, east, south, north = layer.GetExtent()
+    return -180 <= west and east <= 180 and -90 <= south and north <= 90
+
+
+def refuse_degrees(path, layer, members, osr, has_unit=False):
+    """Rejects coordinates in other units than metres. `members` are those of a GeoJSON file, else None.
+
+    Without a coordinate system GeoJSON is in degrees, except for larger numbers or a given unit."""
     system = layer.GetSpatialRef()
     if members is not None:
+        if "crs" not in members and (has_unit or not are_degrees(layer)):
+            return
         if "crs" not in members:
             raise NetworkError(
                 f"{path}: names no coordinate system (\"crs\"), which means longitude and latitude in degrees "
                 "(RFC 7946), and Sprekk needs metres; export it in a projected system such as UTM, or write "
-                "\"crs\": null for local coordinates in metres",
+                "\"crs\": null, or give \"unit\" = \"1 m\" of its set, for local coordinates in metres",
                 [path],
             )
         if members["crs"] is None:  # local system, valid before RFC 7946
@@ -288,7 +300,7 @@ def read(path, dim, layers=(), left_out=None, has_unit=False):
         if ending == ".dxf" and not has_unit:
             refuse_other_units(path)
         for layer in (source.GetLayer(i) for i in range(source.GetLayerCount())):
-            refuse_degrees(path, layer, members, osr)
+            refuse_degrees(path, layer, members, osr, has_unit)
             for feature in layer:
                 k += 1
                 known.add(layer_of(feature, layer, path))

@@ -1,9 +1,12 @@
 """Passes a plan to gmsh and returns the mesh."""
+import os
 import re
+import tempfile
 from dataclasses import dataclass
 
 import gmsh
 import numpy as np
+from intersecting import intersecting
 from shapes import NetworkError
 
 FAR = 20  # in diagonals of the domain
@@ -30,12 +33,13 @@ def make_mesh(plan, sizes):
         gmsh.logger.start()
         origin = origin_of(plan.network.domain)
         model = Model(plan, origin)
-        set_sizes(sizes, origin)
-        try:
-            gmsh.model.mesh.generate(plan.dim)
-        except Exception as error:  # gmsh raises untyped exceptions
-            said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
-            raise model.failure(said or [str(error)]) from None
+        with tempfile.TemporaryDirectory() as folder:
+            set_sizes(sizes, origin, folder)
+            try:
+                gmsh.model.mesh.generate(plan.dim)
+            except Exception as error:  # gmsh raises untyped exceptions
+                said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
+                raise model.failure(said or [str(error)]) from None
         return model.mesh(sizes)
     finally:
         gmsh.finalize()
@@ -60,7 +64,8 @@ class Model:
         self.line = {edge: geo.addLine(edge[0] + 1, edge[1] + 1) for edge in plan.edges}
         self.faces = plan.faces()
         for face in self.faces:
-            face.tag = geo.addPlaneSurface([geo.addCurveLoop(self.loop(ring)) for ring in face.rings])
+            rings = [self.turned(face), *face.rings[1:]] if plan.dim == 3 and plan.network.repair == "join" else face.rings
+            face.tag = geo.addPlaneSurface([geo.addCurveLoop(self.loop(ring)) for ring in rings])
         if plan.dim == 3:
             outer = [face.tag for face in self.faces if plan.owners[face.owner].kind == "boundary"]
             geo.addVolume([geo.addSurfaceLoop(outer)], 1)
@@ -71,28 +76,59 @@ class Model:
         if plan.dim == 3:
             gmsh.model.mesh.embed(2, [face.tag for face in self.faces if face.tag not in outer], 3, 1)
 
+    def turned(self, face):
+        """Returns the outer ring, beginning with the three consecutive points that determine the plane best, as gmsh requires."""
+        ring, plane = face.rings[0], self.plan.surfaces[face.owner].plane
+        x, height = self.plan.points[ring], abs(plane.height(self.plan.points[ring]))
+        one, other = np.roll(x, -1, axis=0), np.roll(x, -2, axis=0)
+        along, across = one - x, other - one
+        area = np.linalg.norm(np.cross(along, across), axis=1) / (np.linalg.norm(along, axis=1) + np.linalg.norm(across, axis=1))
+        error = np.maximum(height, np.maximum(np.roll(height, -1), np.roll(height, -2)))
+        first = int(np.argmin((error + 1e-9 * area.max()) / np.maximum(area, 1e-300)))
+        return ring[first:] + ring[:first]
+
     def loop(self, ring):
         return [self.line[a, b] if a < b else -self.line[b, a] for a, b in zip(ring, ring[1:] + ring[:1])]
 
     def failure(self, said):
-        """Returns an error with the message of gmsh and the names of the features with the tags in this message."""
-        owners = {face.tag: self.plan.owners[face.owner].name for face in self.faces}
-        names = [owners[int(tag)] for line in said for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners]
-        where = f", at {' and '.join(dict.fromkeys(names))}" if names else ""
-        return NetworkError(f"gmsh could not generate the mesh{where}: {said[0]}; increase \"tolerance\" to join close fractures, or "
-                            "choose smaller sizes", features=[tuple(names)] if names else [])
+        """Returns an error with the message of gmsh and the names of the features with the tags in this message.
 
-    def mesh(self, sizes):
-        dim = self.plan.dim
+        For other messages in 3D these are the features with intersecting triangles."""
+        owners = {face.tag: self.plan.owners[face.owner] for face in self.faces}
+        pairs = [[int(tag) for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners] for line in said]
+        pairs = [pair for pair in pairs if pair] or (self.intersecting() if self.plan.dim == 3 else [])
+        named = {tuple(sorted({owners[tag].name for tag in pair if owners[tag].kind == "fracture"})) for pair in pairs} - {()}
+        names = list(dict.fromkeys(owners[tag].name for pair in pairs for tag in pair))
+        where = f", at {' and '.join(names[:4])}" if names else ""
+        return NetworkError(f"gmsh could not generate the mesh{where}: {said[0]}; increase \"tolerance\" to join close fractures, or "
+                            "choose smaller sizes", features=sorted(named))
+
+    def intersecting(self):
+        """Returns the pairs of tags of faces whose triangles intersect."""
+        number, points = self.nodes()
+        of_face = [(face.tag, self.elements(2, face.tag, number)) for face in self.faces]
+        tag = np.concatenate([np.full(len(nodes), one) for one, nodes in of_face])
+        i, j = intersecting(points, np.concatenate([nodes for _, nodes in of_face]))
+        return sorted(set(zip(tag[i].tolist(), tag[j].tolist())))
+
+    def nodes(self):
+        """Returns the index of each node by its tag, and the points."""
         tags, x, _ = gmsh.model.mesh.getNodes()
         number = np.zeros(int(tags.max()) + 1, int)
         number[tags.astype(int)] = np.arange(len(tags))
-        points = x.reshape(-1, 3) + self.origin
+        return number, x.reshape(-1, 3) + self.origin
+
+    def elements(self, of, tag, number):
+        """Returns the elements [element, node] of an entity of dimension `of`."""
+        types, _, nodes = gmsh.model.mesh.getElements(of, tag)
+        return number[np.concatenate(nodes).astype(int)].reshape(-1, of + 1) if len(types) else np.zeros((0, of + 1), int)
+
+    def mesh(self, sizes):
+        dim = self.plan.dim
+        number, points = self.nodes()
 
         def elements(of, tag=-1):
-            types, _, nodes = gmsh.model.mesh.getElements(of, tag)
-            n = of + 1
-            return number[np.concatenate(nodes).astype(int)].reshape(-1, n) if len(types) else np.zeros((0, n), int)
+            return self.elements(of, tag, number)
 
         cells = elements(dim)
         if not len(cells):
@@ -123,7 +159,22 @@ def foremost(plan, owners):
     return None
 
 
-def set_sizes(sizes, origin):
+def set_sizes(sizes, origin, folder):
+    """Defines the size field of gmsh. A file in `folder` contains the grid of sizes of repaired networks."""
+    if sizes.grid is None:
+        set_fields(sizes, origin)
+    else:
+        path, field = os.path.join(folder, "sizes"), gmsh.model.mesh.field
+        sizes.grid.write(path, origin)
+        structured = field.add("Structured")
+        field.setString(structured, "FileName", path)
+        field.setNumber(structured, "TextFormat", 1)
+        field.setAsBackgroundMesh(structured)
+    for option, value in (("MeshSizeMax", sizes.network.size), ("MeshSizeExtendFromBoundary", 0), ("MeshSizeFromPoints", 0)):
+        gmsh.option.setNumber(f"Mesh.{option}", value)
+
+
+def set_fields(sizes, origin):
     """Defines the size field of gmsh: the minimum over all sizes of a function of the distance to their points."""
     network, field = sizes.network, gmsh.model.mesh.field
     level = np.round(2 * np.log2(sizes.sizes / network.size)).astype(int)
@@ -145,5 +196,3 @@ def set_sizes(sizes, origin):
         minimum = field.add("Min")
         field.setNumbers(minimum, "FieldsList", fields)
         field.setAsBackgroundMesh(minimum)
-    for option, value in (("MeshSizeMax", network.size), ("MeshSizeExtendFromBoundary", 0), ("MeshSizeFromPoints", 0)):
-        gmsh.option.setNumber(f"Mesh.{option}", value)

@@ -47,14 +47,36 @@ def sides_meet(parts, tolerance, pieces):
                 yield i, j
 
 
-def lone(parts, dim, tolerance):
-    """Returns the first part not connected to part 0, or None. Parts of one row or feature are connected."""
+def connected(parts, dim, tolerance):
+    """Returns for each part the first part of its component. Parts of one row or feature are connected."""
     pieces, first = Pieces(len(parts)), {}
     for k, part in enumerate(parts):
         pieces.join(k, first.setdefault(part.name, k))
     for i, j in ends_meet(parts, tolerance) if dim == 2 else sides_meet(parts, tolerance, pieces):
         pieces.join(int(i), int(j))
-    return next((part for k, part in enumerate(parts) if pieces.of(k) != 0), None)
+    return [pieces.of(k) for k in range(len(parts))]
+
+
+def separate_parts(fractures, dim, tolerance):
+    """Gives parts of one name that do not meet their own names. Returns a line of the report for each such name."""
+    of_name, taken, found = {}, {fracture.single for fracture in fractures}, []
+    for fracture in fractures:
+        of_name.setdefault(fracture.single, []).append(fracture)
+    for name, parts in of_name.items():
+        if len({part.name for part in parts}) < 2:
+            continue
+        component, new = connected(parts, dim, tolerance), {}
+        for part, first in zip(parts, component):
+            if first and first not in new:
+                k = 2 + len(new)
+                while f"{name} ({k})" in taken:
+                    k += 1
+                new[first] = f"{name} ({k})"
+                taken.add(new[first])
+            part.single = new.get(first, name)
+        if new:
+            found.append(f"{len(new) + 1} fractures instead of one, \"{name}\", since its parts do not meet")
+    return found
 
 
 def joined_parts(fractures, dim, tolerance):
@@ -66,7 +88,7 @@ def joined_parts(fractures, dim, tolerance):
         places = list(dict.fromkeys(part.name for part in parts))
         if len(places) < 2:
             continue
-        apart = lone(parts, dim, tolerance)
+        apart = next((part for part, first in zip(parts, connected(parts, dim, tolerance)) if first), None)
         if apart is None:
             more = f" and {len(places) - 2} more" if len(places) > 2 else ""
             found.append(f"one fracture, \"{name}\", of {len(places)} parts: {places[0]}, {places[1]}{more}")

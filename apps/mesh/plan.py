@@ -3,11 +3,13 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
-from arrange import arrange, near_pairs, on_segment
+from arrange import Graph, arrange, near_pairs, on_segment
+from join_lines import joined
+from joined_graph import JoinedGraph
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
 from shapes import Errors, NetworkError, Plane, Unusable, check_line, check_polygon, refuse, thinned, unusable
-from surfaces import Surface, are_level, check_angles, moved_onto, overlap, traces, without
+from surfaces import Surface, angle_of_planes, are_close, are_level, check_angles, moved_onto, overlap, traces, without
 
 
 class Face:
@@ -31,17 +33,29 @@ class Plan:
         self.repairs, self.surfaces = list(network.joined), None
         # In 3D a larger tolerance for edges would bend surfaces. Only corners move, within their planes.
         self.tolerance = network.tolerance if self.dim == 2 else min(network.tolerance, 1e-6 * network.domain.size)
-        self.owners, segments, parents, touches = (self.lines if self.dim == 2 else self.polygons)()
-        graph = arrange(segments, parents, self.tolerance)
+        self.touching, joins = {}, network.repair == "join"  # {point where features touch: indices of owners}
+        if joins and self.dim == 2:
+            self.owners, graph = joined(network)
+            self.check_sets()
+        else:
+            self.owners, segments, parents, touches = (self.lines if self.dim == 2 else self.polygons)()
+            graph = self.joined_surfaces(segments, parents, touches) if joins else arrange(segments, parents, self.tolerance)
         self.points, self.edges = graph.points, graph.edges
         self.graph = graph
         self.report_joined(graph)
-        if self.dim == 2:
+        if self.dim == 2 and not joins:
             self.straighten_sides()
             self.part_overlaps()
-        self.touching = {}  # {point where features touch: indices of owners}
-        for point, of in touches:
+        for point, of in touches if not joins else ():
             self.touching.setdefault(int(np.argmin(np.linalg.norm(self.points - point, axis=1))), set()).update(of)
+
+    def joined_surfaces(self, segments, parents, touches):
+        """Returns the graph of surfaces in 3D joined within the tolerance. Points may leave the planes of fractures."""
+        network = self.network
+        graph = JoinedGraph(segments, parents, range(len(network.domain.surfaces)), network.tolerance, self.surfaces, touches)
+        graph.repair(np.radians(network.minimum_angle))
+        self.touching, self.tolerance = dict(graph.touches), network.tolerance
+        return Graph(graph.points, {edge: frozenset(of) for edge, of in graph.edges.items()})
 
     def is_fracture(self, owner):
         return self.owners[owner].kind == "fracture"
@@ -116,11 +130,14 @@ class Plan:
             if not self.network.leaves_out or feature.kind not in ("fracture", "constraint"):
                 raise
             self.repairs.append(f"left out: {error}")
+            why = str(error).removeprefix(f"{feature.name}: ")
+            self.network.journal.leave_out(feature, why, "outside" if "outside" in why else "short")
             self.network.fractures = [one for one in self.network.fractures if one is not feature]
 
     def check_sets(self):
         """Checks that each set has a fracture in the domain."""
-        left, errors = {fracture.group for fracture in self.network.fractures}, Errors()
+        out = self.network.journal.why
+        left, errors = {one.group for one in self.network.fractures if one.name not in out}, Errors()
         for name in self.network.entries["fractures"]:
             if name not in left:
                 errors.lines.append(f"{self.network.place('fractures > ' + name)}: has no usable fracture in the domain")
@@ -155,20 +172,24 @@ class Plan:
 
     def polygons(self):
         """Returns owners, segments, their owners, and points of contact of surfaces, of a network in 3D."""
-        network, domain, tolerance = self.network, self.network.domain, self.tolerance
+        network, domain, tolerance, joins = self.network, self.network.domain, self.tolerance, self.network.repair == "join"
         surfaces, errors = list(domain.surfaces), Errors()
         for feature in network.fractures:
             with errors.of_one(), self.leaving_out(feature):
                 check_polygon(feature, network.tolerance)
                 self.flatten(feature)
-                parts = domain.clip_polygon(self.joined_corners([Surface.whole(feature)], domain.surfaces)[0], tolerance)
+                whole = [Surface.whole(feature)]
+                parts = domain.clip_polygon((whole if joins else self.joined_corners(whole, domain.surfaces))[0], tolerance)
+                if joins:
+                    parts = [part for part in parts if part.shape.area > network.tolerance * part.shape.length]
                 if not parts:
                     unusable(feature, "lies outside of the domain")
                 surfaces += parts
         errors.throw()
         self.check_sets()
         check_same(network.fractures, tolerance)
-        surfaces[len(domain.surfaces):] = self.joined_corners(surfaces[len(domain.surfaces):], surfaces)
+        if not joins:
+            surfaces[len(domain.surfaces):] = self.joined_corners(surfaces[len(domain.surfaces):], surfaces)
         for feature in network.constraints + [side for body in network.regions for side in body.sides]:
             with errors.of_one(), self.leaving_out(feature):
                 check_polygon(feature, network.tolerance)
@@ -186,7 +207,7 @@ class Plan:
             segments += list(sides)
             parents += [frozenset([k])] * len(sides)
         low, high = (np.array([getattr(s, which) for s in surfaces]) for which in ("low", "high"))
-        for i, j in zip(*near_pairs(low, high, 2 * tolerance)):
+        for i, j in zip(*near_pairs(low, high, 2 * (network.tolerance if joins else tolerance))):
             with errors.of_one():
                 for begin, end in self.meet(surfaces[i], surfaces[j]):
                     if np.linalg.norm(end - begin) > tolerance:
@@ -228,6 +249,10 @@ class Plan:
                 raise NetworkError(f"{one.feature.name} and {other.feature.name} overlap; remove one, or merge them",
                                    features=[(one.feature.name, other.feature.name)])
             return []
+        if self.network.repair == "join" and are_fractures and angle_of_planes(one.plane, other.plane) < self.network.minimum_angle:
+            if are_close(one, other, self.network.tolerance):
+                raise NetworkError(f"{one.feature.name} and {other.feature.name} are nearly parallel and too close",
+                                   features=[(one.feature.name, other.feature.name)])
         if np.linalg.norm(np.cross(one.plane.normal, other.plane.normal)) < 1e-8:
             return []
         found = traces(one, other, tolerance)

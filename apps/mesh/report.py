@@ -68,10 +68,10 @@ def of_mesh(mesh, plan, sizes):
     worst = mesh.points[mesh.cells[np.argmin(quality)]].mean(axis=0)[:plan.dim]
     return {"dimension": plan.dim, "nodes": len(mesh.points), "cells": len(mesh.cells), "fracture faces": int(sum(
                 plan.is_fracture(k) for k in mesh.face_owner)),
-            "intersections": n_intersections(mesh, plan), "volume": float(volume.sum()),
+            "expected cells": float(sizes.expected_number()), "intersections": n_intersections(mesh, plan), "volume": float(volume.sum()),
             "gamma": {"min": float(quality.min()), "percentile 1": float(np.percentile(quality, 1)), "median": float(np.median(quality)),
                       "worst at": [float(x) for x in worst]},
-            "tolerance": plan.network.tolerance, "sets": of_sets(mesh, plan, sizes), "repairs": plan.repairs}
+            "tolerance": plan.network.tolerance, "files": plan.network.journal.lines(plan.dim), "sets": of_sets(mesh, plan, sizes), "repairs": plan.repairs}
 
 
 def as_text(report):
@@ -82,6 +82,7 @@ def as_text(report):
     for name, s in report["sets"].items():
         lines.append(f"  {name}: {s['fractures']} fractures, {what} {s[what]:.6g}, {s['faces']} faces; edges: median {s['median edge']:.3g} m, "
                      f"shortest {s['shortest edge']:.3g} m, target {s['median target size']:.3g} m, smaller near tips and in gaps")
+    lines += [f"  {line}" for line in report["files"]]
     shown = report["repairs"][:10]
     lines += [f"  {line}" for line in shown]
     if len(shown) < len(report["repairs"]):

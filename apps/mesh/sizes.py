@@ -8,9 +8,11 @@ from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
 from shapely.geometry import Point
 from shapes import NetworkError, diameter
+from size_grid import CELL, SizeGrid
 
 TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # default size at tips / size at the fracture
-CELL = {2: np.sqrt(3) / 4, 3: 1 / (6 * np.sqrt(2))}  # area or volume of a regular cell with edges of length 1
+REPAIRED_TIP_RATIO = {2: 1 / 2, 3: 1}  # of repaired networks
+REPAIRED_GAP = {2: 1, 3: 2}  # size in gaps / width of the gap, of repaired networks
 MIN_RATIO = {2: 1 / 20, 3: 1 / 8}  # smallest size in narrow gaps / size at the fractures
 
 
@@ -19,12 +21,15 @@ class Sizes:
 
     def __init__(self, plan):
         self.plan, self.network = plan, plan.network
+        self.grid = None  # of repaired networks
         self.of_owner = [self.fracture_size(owner) if owner.kind == "fracture" else np.inf for owner in plan.owners]
         self.tips, self.intersections = special(plan)
         self.edges = np.array(list(plan.edges))
         self.segments = plan.graph.segments()
         self.at_edge = np.array([self.edge_size(edge, of) for edge, of in plan.edges.items()])
-        self.check_number()
+        repaired = self.network.repair != "report"
+        if not repaired:
+            self.check_number()
         self.found = [np.empty((0, 3))], [np.empty(0)]
         self.take_edges()
         if plan.dim == 2:
@@ -33,6 +38,9 @@ class Sizes:
             self.take_surfaces()
         self.take_gaps()
         self.points, self.sizes = np.concatenate(self.found[0]), np.concatenate(self.found[1])
+        if repaired:
+            self.grid = SizeGrid(self)
+            self.check_number()
 
     def fracture_size(self, fracture):
         x = fracture.points
@@ -75,12 +83,16 @@ class Sizes:
                 add("relative size", self.of_owner[k], surface.shape.area, 2)
         return {entry: n / CELL[dim] for entry, n in found.items()}
 
+    def expected_number(self):
+        return self.grid.expected_cells() if self.grid else sum(self.expected_cells().values())
+
     def check_number(self):
         """Raises an error if the expected number of cells exceeds the limit."""
         cells, maximum = self.expected_cells(), self.network.maximum_cells
-        n, entry = sum(cells.values()), max(cells, key=cells.get)
+        n, entry = self.expected_number(), max(cells, key=cells.get)
+        share = cells[entry] / sum(cells.values())
         if n > maximum:
-            raise NetworkError(f"Sprekk > Mesh file > network: sizes require about {n:.2g} cells, {cells[entry] / n:.0%} of them due to "
+            raise NetworkError(f"Sprekk > Mesh file > network: sizes require about {n:.2g} cells, {share:.0%} of them due to "
                                f"\"{entry}\"; \"maximum cells\" is {maximum:g}")
 
     def add(self, points, sizes):
@@ -89,7 +101,8 @@ class Sizes:
 
     def tip_size(self, owners):
         size = self.network.size_at["tips"]
-        return size if size is not None else TIP_RATIO[self.plan.dim] * min(self.of_owner[k] for k in owners)
+        ratio = (TIP_RATIO if self.network.repair == "report" else REPAIRED_TIP_RATIO)[self.plan.dim]
+        return size if size is not None else ratio * min(self.of_owner[k] for k in owners)
 
     def edge_size(self, edge, of):
         size = min([self.network.size] + [self.of_owner[k] for k in of])
@@ -132,26 +145,26 @@ class Sizes:
 
     def take_gaps(self):
         """Adds sizes where edges that do not meet are closer than their size; in 3D also for points and surfaces."""
-        reach = self.at_edge.max()
-        i, j = near_pairs(self.segments.min(axis=1), self.segments.max(axis=1), reach)
+        i, j = near_pairs(self.segments.min(axis=1), self.segments.max(axis=1), self.at_edge)
         apart = ~(self.edges[i][:, :, None] == self.edges[j][:, None, :]).any(axis=(1, 2))
         i, j = i[apart], j[apart]
         wanted = np.minimum(self.at_edge[i], self.at_edge[j])
         _, _, gap = closest(self.segments[i], self.segments[j])
         minimum = MIN_RATIO[self.plan.dim]
-        for k in np.flatnonzero(gap < wanted):
+        factor = 1 if self.network.repair == "report" else REPAIRED_GAP[self.plan.dim]
+        for k in np.flatnonzero(factor * gap < wanted):
             for one, other in ((i[k], j[k]), (j[k], i[k])):
                 begin, end = self.segments[one]
                 n = min(int(np.ceil(np.linalg.norm(end - begin) / gap[k])), 64)
                 x = begin + np.linspace(0, 1, n + 1)[:, None] * (end - begin)
                 _, distance = on_segment(x, *(np.broadcast_to(y, x.shape) for y in self.segments[other]))
-                near = distance < wanted[k]
+                near = factor * distance < wanted[k]
                 if near.any():
-                    self.add(x[near], np.maximum(distance[near], minimum * wanted[k]))
+                    self.add(x[near], np.maximum(factor * distance[near], minimum * wanted[k]))
         if self.plan.dim == 3:
-            self.take_gaps_of_surfaces(minimum)
+            self.take_gaps_of_surfaces(minimum, factor)
 
-    def take_gaps_of_surfaces(self, minimum):
+    def take_gaps_of_surfaces(self, minimum, factor):
         at = self.plan.graph.parents_at()
         for k, surface in enumerate(self.plan.surfaces):
             size = min(self.of_owner[k], self.network.size)
@@ -159,11 +172,11 @@ class Sizes:
             near = np.flatnonzero(np.all((points > surface.low - size) & (points < surface.high + size), axis=1))
             height = surface.plane.height(points[near])
             flat = surface.plane.inside(points[near])
-            over = (abs(height) < size) & in_polygon(flat, np.array(surface.shape.exterior.coords[:-1]))
+            over = (factor * abs(height) < size) & in_polygon(flat, np.array(surface.shape.exterior.coords[:-1]))
             over &= np.array([k not in at[p] | self.plan.touching.get(int(p), set()) for p in near], bool)
             if over.any():
                 for x in (points[near[over]], surface.plane.outside(flat[over])):
-                    self.add(x, np.maximum(abs(height[over]), minimum * size))
+                    self.add(x, np.maximum(factor * abs(height[over]), minimum * size))
 
 
 def special(plan):

@@ -161,3 +161,47 @@ def check_angles(one, other, found, minimum):
         if angle < minimum:
             raise NetworkError(f"{one.feature.name} and {other.feature.name} meet at {angle:.3g} degrees; the \"minimum angle\" is {minimum:g}",
                                features=[(one.feature.name, other.feature.name)])
+
+
+def angle_of_planes(one, other):
+    """Returns the angle between two planes, from 0 to 90 degrees."""
+    sine, cosine = np.linalg.norm(np.cross(one.normal, other.normal)), abs(one.normal @ other.normal)
+    return float(np.degrees(np.arctan2(sine, cosine)))
+
+
+def heights_over(one, other):
+    """Returns the lowest and highest height above `other` of the part of `one` whose projection lies on `other`, or None."""
+    ring = one.plane.inside(other.rings[0])
+    common = one.shape.buffer(0).intersection(Polygon(ring).buffer(0))
+    if common.is_empty:
+        return None
+    flat = np.concatenate([np.array(part.exterior.coords) for part in polygons_of(common)] or [np.zeros((0, 2))])
+    height = other.plane.height(one.plane.outside(flat))
+    return (height.min(), height.max()) if len(height) else None
+
+
+def are_close(one, other, distance):
+    """Returns whether two nearly parallel surfaces come closer than a distance."""
+    found = heights_over(one, other)
+    return found is not None and found[0] < distance and found[1] > -distance
+
+
+def trimmed(points, other, distance):
+    """Returns the largest part of a polygon on one side of the plane of another polygon, at the distance or farther."""
+    plane, limit = Plane(points), Plane(other)
+    height, flat = limit.height(points), plane.inside(points)
+    best = None
+    for side in (1.0, -1.0):
+        h, ring = side * height - distance, []
+        for k in range(len(flat)):
+            a, b = h[k - 1], h[k]
+            if a * b < 0:
+                ring.append(flat[k - 1] + a / (a - b) * (flat[k] - flat[k - 1]))
+            if b >= 0:
+                ring.append(flat[k])
+        if len(ring) > 2:
+            parts = polygons_of(Polygon(ring).buffer(0))
+            for part in parts:
+                if best is None or part.area > best.area:
+                    best = part
+    return None if best is None else plane.outside(np.array(best.exterior.coords[:-1]))

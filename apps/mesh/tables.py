@@ -10,8 +10,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from shapes import MAXIMUM, Errors, NetworkError, ellipse
 
+DECIMAL_COMMA = re.compile(r"^(\s*[-+]?\d*),(\d+(?:[eE][-+]?\d+)?\s*)$")
 MAX_CHARACTERS = 2 * 10**8  # in a file; some million fractures
-SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # unsupported separators
+SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # other than commas
 
 
 @dataclass
@@ -29,6 +30,7 @@ class Table:
     fractures: list = field(default_factory=list)  # of type Row
     box: tuple = None  # lowest and highest corner of the domain, if given
     errors: list = field(default_factory=list)
+    corners: int = 32  # of the polygon of an ellipse
 
     def add(self, place, points, number=""):
         number = number or str(len(self.fractures) + 1)
@@ -83,10 +85,21 @@ def read_lines(path):
     return text.splitlines()
 
 
-def columns(line):
-    """Returns the words of a line without comment, possibly in quotes; None for an empty line."""
-    line = line.partition("#")[0].strip()
-    return next(csv.reader([line], skipinitialspace=True)) if line else None
+def columns(line, separator=","):
+    """Returns the words of a line without comment, possibly in quotes; None for an empty line.
+
+    With another separator than a comma, numbers may have decimal commas."""
+    line = line.partition("#")[0].strip(" \r\n" if separator == "\t" else None)
+    if not line.strip():
+        return None
+    words = next(csv.reader([line], delimiter=separator, skipinitialspace=separator != "\t"))
+    return words if separator == "," else [DECIMAL_COMMA.sub(r"\1.\2", word) for word in words]
+
+
+def separator_of(line):
+    """Returns the separator of the columns, from the first line: a semicolon, a tab or a comma."""
+    line = re.sub('"[^"]*"', "", line.partition("#")[0])
+    return next((one for one in (";", "\t") if one in line and (one == ";" or "," not in re.sub(r"\d,\d", "", line))), ",")
 
 
 def other_separator(line, words):
@@ -229,7 +242,7 @@ def ellipses_row(x, place, table, number):
     if min(x[3:5]) <= 0:
         table.errors.append(f"{place}: has the radii {x[3]:g} and {x[4]:g}, they must be positive")
     else:
-        table.add(place, ellipse(x[:3], x[3:5], x[6], x[7], x[5]), number)
+        table.add(place, ellipse(x[:3], x[3:5], x[6], x[7], x[5], table.corners), number)
 
 
 def polygons_row(x, place, table, number):
@@ -298,24 +311,29 @@ def are_titles(words):
 
 
 def rows_of(path):
-    """Yields (line number, words) of the rows of a CSV file. Skips empty rows and comments after #."""
+    """Yields (line number, words) of the rows of a CSV file. Skips empty rows and comments after #.
+
+    The first row determines the separator: commas, semicolons or tabs."""
+    separator = None
     for k, line in enumerate(read_lines(path), 1):
-        words = columns(line)
+        if separator is None and line.partition("#")[0].strip():
+            separator = separator_of(line)
+        words = columns(line, separator or ",")
         if words is None or not any(word.strip() for word in words):
             continue
-        separator = other_separator(line, words)
-        if separator:
-            raise NetworkError(f"{path}: line {k}: has {separator}; columns are separated by commas, and numbers have "
-                               "decimal points", [path])
+        other = other_separator(line, words) if separator == "," else None
+        if other:
+            raise NetworkError(f"{path}: line {k}: has {other}; columns are separated by commas, or by semicolons or tabs in "
+                               "all rows; with commas numbers have decimal points", [path])
         yield k, words
 
 
-def read_csv(path, kind, dim=2, entries=()):
+def read_csv(path, kind, dim=2, entries=(), corners=32):
     """Returns the table of a CSV file. A first line without numbers contains the titles of the columns.
 
     Rows of points with the same number form one fracture. Points have `dim` coordinates. `entries` are names of entries
     of joints, for misspelt titles."""
-    table, known = Table(), None
+    table, known = Table(corners=corners), None
     for k, words in rows_of(path):
         place = f"{path}: line {k}"
         if known is None and are_titles(words):
@@ -354,6 +372,12 @@ def has_points(path, dim):
     return {"x", "y"} <= titles and not titles & others
 
 
+def has_ellipses(path):
+    """Returns whether the titles are those of ellipses."""
+    _, words = next(rows_of(path), (0, []))
+    return set(SHAPE["ellipses"]) <= {parted_title(word)[0].lower() for word in words}
+
+
 def kind_of(path):
     """Returns the kind of the rows, from the titles, or from the number of columns without titles."""
     _, words = next(rows_of(path), (0, []))
@@ -371,8 +395,8 @@ def complete(table, path):
     return table
 
 
-def read_table(path, kind, dim=2, entries=()):
+def read_table(path, kind, dim=2, entries=(), corners=32):
     """Returns the fractures in a file. `entries` as for read_csv().
 
     All errors are raised together. With kind = None the columns determine the kind."""
-    return complete(read_csv(path, kind or kind_of(path), dim, entries), path)
+    return complete(read_csv(path, kind or kind_of(path), dim, entries, corners), path)

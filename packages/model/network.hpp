@@ -52,6 +52,8 @@ struct Network {
     std::optional<std::string> format;
     std::vector<std::string> layers;  ///< layers of the file; empty: all
     std::optional<Real> unit;         ///< unit of the coordinates in the file, m
+    std::vector<Real> window;         ///< lowest and highest corner of a box that crops the file, m; empty: none
+    std::optional<int> corners;       ///< of the polygon of an ellipse or a disc
     std::map<std::string, Points> lines, polygons;
     std::map<std::string, Ellipse> ellipses;
     std::optional<Random> random;
@@ -68,6 +70,7 @@ struct Network {
   Real minimum_angle = 2;
   int maximum_cells = 10000000;
   std::string unusable = "refused";  ///< or "left out"
+  std::string repair = "report";     ///< or "join", "drop"
   void describe(base::Section& section);
 
   /// Makes file names absolute; they are relative to `folder`.
