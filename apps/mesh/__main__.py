@@ -8,11 +8,14 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from progress import doing
 from shapes import NetworkError
 
+OTHER_TOLERANCES = (0.7, 1.4, 0.5, 2.0)  # factors of the tolerance of repairs, tried if gmsh fails without a place
+CELLS_PER_SECOND, BYTES_PER_CELL, LARGE = 3e4, 1e3, 10**6  # rough estimates for gmsh, printed for large meshes
 POOR, MAX_POOR = 0.02, 5  # quality of cells for which repairs leave out a fracture, and rounds of such repairs
 MAX_DRAWN = 0.2  # maximum share of random fractures drawn again; a larger share would change the statistics
 
@@ -73,11 +76,25 @@ def made(network):
             checks.check(plan)
     with doing(f"computing cell sizes at {len(plan.edges)} edges of fractures"):
         sizes = Sizes(plan)
-    with doing(f"generating a mesh of about {sizes.expected_number():.2g} cells"):
+    cells = sizes.expected_number()
+    if cells > LARGE:
+        print(f"sprekk: about {cells:.2g} cells are expected; gmsh needs about {cells / CELLS_PER_SECOND:.2g} s and "
+              f"{cells * BYTES_PER_CELL / 1e9:.2g} GB", file=sys.stderr, flush=True)
+    with doing(f"generating a mesh of about {cells:.2g} cells"):
         mesh = mesher.make_mesh(plan, sizes)
     if network.repair == "join":
         improve.improve(mesh, plan.dim)
     return plan, sizes, mesh
+
+
+def set_merged_apart(plan, mesh):
+    """Makes fractures without faces no fractures. They were merged with others."""
+    present = {plan.owners[k].name for k in set(mesh.face_owner.tolist())}
+    for k, owner in enumerate(plan.owners):
+        if owner.kind == "fracture" and owner.name not in present:
+            plan.owners[k] = replace(owner, kind="merged")
+            if owner.name not in plan.network.journal.why:
+                plan.network.journal.leave_out(owner, "merged with other fractures", "duplicate")
 
 
 def refuse_poor(plan, mesh):
@@ -102,18 +119,24 @@ def made_of(text, network):
     If fractures cannot be meshed together, the last random one of each conflict is drawn again. Repairs leave out the
     smallest one instead."""
     from description import Network
-    again, poor_rounds = {}, 0
+    again, poor_rounds, given, factors = {}, 0, network.tolerance, list(OTHER_TOLERANCES)
     while True:
         try:
             plan, *rest = made(network)
             if network.repair == "join" and poor_rounds < MAX_POOR:
                 poor_rounds += 1
                 refuse_poor(plan, rest[-1])
+            if network.repair == "join":
+                set_merged_apart(plan, rest[-1])
             plan.repairs[:0] = [f"drawn again{f' {times} times' if times > 1 else ''} due to a conflict with other fractures: {name}"
                                 for name, times in again.items()]
             return plan, *rest
         except NetworkError as error:
             drawn = {name: k for k, name in enumerate(network.at_random)}
+            if not error.features and network.repair == "join" and "gmsh" in str(error) and factors:
+                network.tolerance = given * factors.pop(0)
+                network.joined.append(f"the tolerance is {network.tolerance:.3g} m, since gmsh failed with {given:.3g} m")
+                continue
             if network.repair != "report" and all(network.conflicting(names) for names in error.features or [()]):
                 network.resolved.clear()
                 for names in error.features:

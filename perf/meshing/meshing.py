@@ -5,6 +5,7 @@ from perf.common import options as common
 from perf.common import table
 from perf.common.program import measured
 from perf.krylov import linear
+from perf.meshing import files
 
 SCENE = "seed/immersed_3d.xml"
 EDGE, QUICK = 72, 12  # cubes along an edge of the box: 2.2 million and 10 thousand tetrahedra
@@ -29,7 +30,12 @@ def main(words):
     parser = common.parser("meshing", __doc__, program=True)
     parser.add_argument("--edge", type=common.count, metavar="N", help=f"cubes along an edge of the refined box, a multiple of 24 ({EDGE}; {QUICK}, refined once and twice, with --quick)")
     parser.add_argument("--ranks", type=common.count, default=2, metavar="N", help="ranks of the rows on several ranks (2)")
+    parser.add_argument("--files", action="store_true", help="mesh files of discs and traces instead, with repairs")
+    parser.add_argument("--binary", type=common.absolute, default=common.ROOT / "build/apps/sprekk/sprekk",
+                        help="the program that reads the scenes of --files")
     options = parser.parse_args(words)
+    if options.files:
+        return files.main(options)
     edge = options.edge or (QUICK if options.quick else EDGE)
     rows = {f"{counted(ranks, 'rank')}, " + (f"{edge >> refinements}^3 refined {refinements} times" if refinements else "made at once"): (refinements, ranks)
             for ranks in sorted({1, options.ranks}) for refinements in ((0, 1, 2) if options.quick else (0, 2, 3))}
