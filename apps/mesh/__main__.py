@@ -1,7 +1,8 @@
 """Generates the mesh of a fracture network, as described by the section `Mesh file > network` of a scene.
 
 FILE is a mesh for gmsh and Sprekk. FILE.json contains statistics of the mesh and the repairs of the network. An
-existing mesh of the same description remains unchanged."""
+existing mesh of the same description remains unchanged. If SCENE is a mesh in the format VTU, FILE is the same mesh in
+the format of gmsh."""
 import argparse
 import hashlib
 import json
@@ -81,7 +82,7 @@ def made(network):
         print(f"sprekk: about {cells:.2g} cells are expected; gmsh needs about {cells / CELLS_PER_SECOND:.2g} s and "
               f"{cells * BYTES_PER_CELL / 1e9:.2g} GB", file=sys.stderr, flush=True)
     with doing(f"generating a mesh of about {cells:.2g} cells"):
-        mesh = mesher.make_mesh(plan, sizes)
+        mesh = (mesher.make_mesh if network.repair == "report" else mesher.make_mesh_apart)(plan, sizes)
     if network.repair == "join":
         improve.improve(mesh, plan.dim)
     return plan, sizes, mesh
@@ -151,6 +152,9 @@ def made_of(text, network):
 
 def make(options):
     """Makes the mesh if it does not exist. Returns the text of its report, or None if it exists, and warnings."""
+    import vtu
+    if vtu.is_vtu(options.scene):
+        return vtu.convert(options.scene, options.output), []
     from description import Network
     text = description(options)
     with doing("reading and generating fractures"):

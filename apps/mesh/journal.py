@@ -75,7 +75,8 @@ class Journal:
 
     def note(self, feature, why):
         if feature.kind == "fracture":
-            self.of(feature).notes.append(why)
+            notes = self.of(feature).notes
+            notes += [] if why in notes else [why]
 
     def compare(self, mesh, plan):
         """Records the measure of each fracture in a mesh, and the largest distance of its nodes from its points."""

@@ -1,6 +1,10 @@
 """Passes a plan to gmsh and returns the mesh."""
+import ctypes
 import os
+import pickle
 import re
+import signal
+import sys
 import tempfile
 from dataclasses import dataclass
 
@@ -43,6 +47,34 @@ def make_mesh(plan, sizes):
         return model.mesh(sizes)
     finally:
         gmsh.finalize()
+
+
+def make_mesh_apart(plan, sizes):
+    """As make_mesh(), in a process of its own, since some errors of gmsh end the process."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "mesh")
+        sys.stdout.flush()
+        child = os.fork()
+        if child == 0:
+            try:
+                ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # end with the parent
+                try:
+                    found = make_mesh(plan, sizes)
+                except NetworkError as error:
+                    found = str(error), error.features
+                with open(path, "wb") as file:
+                    pickle.dump(found, file)
+            finally:
+                os._exit(0)
+        _, status = os.waitpid(child, 0)
+        if not os.path.exists(path) or os.path.getsize(path) == 0:
+            raise NetworkError(f"gmsh could not generate the mesh: it ended with status {status}; increase \"tolerance\" to join close "
+                               "fractures, or choose smaller sizes")
+        with open(path, "rb") as file:
+            found = pickle.load(file)
+    if isinstance(found, tuple):
+        raise NetworkError(found[0], features=found[1])
+    return found
 
 
 def origin_of(domain):

@@ -280,7 +280,20 @@ class Plan:
                 refuse(surface.feature, f"its faces have {area:.9g} m^2 of {surface.shape.area:.9g} m^2: its intersections could not be resolved; "
                                         f"try another \"tolerance\"")
             found += faces
-        return list({frozenset(face.rings[0]): face for face in reversed(found)}.values())[::-1]  # without duplicates
+        found = list({frozenset(face.rings[0]): face for face in reversed(found)}.values())[::-1]  # without duplicates
+        return self.without_overlaps(found) if self.network.repair == "join" else found
+
+    def without_overlaps(self, faces):
+        """Returns the faces, except those of fractures with all corners on another surface, which joining made overlap."""
+        at, found = self.graph.parents_at(), []
+        for face in faces:
+            others = set.intersection(*(at[p] | self.touching.get(p, set()) for p in face.rings[0])) - {face.owner}
+            if others and self.is_fracture(face.owner):
+                self.network.journal.note(self.owners[face.owner], f"{face.shape.area:.3g} m^2 are joined with "
+                                          f"{self.owners[min(others)].name}")
+            else:
+                found.append(face)
+        return found
 
 
 def direction(line, point):

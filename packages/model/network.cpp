@@ -67,15 +67,17 @@ void Network::Set::describe(base::Section& s) {
   s.entry(file, "file", "-",
           "file of the fractures, relative to the folder of the scene: CSV, .fab of FracMan, .dat of dfnWorks, .ts of "
           "GOCAD, .geojson, .json, .shp, .gpkg or .dxf");
-  s.choice(format, "format", {"points", "lines", "polygons", "ellipses", "discs", "fab", "dfnworks", "gocad"},
-           "format of the file; points: id,x,y (3D: id,x,y,z), one point of the fracture id per line; lines: "
-           "id,x0,y0,x1,y1; polygons: x0,y0,z0,x1,y1,z1,...; ellipses: cx,cy,cz,r1,r2,rake,strike,dip in degrees; "
-           "discs: titles x,y,z,dip,dip direction or strike,radius; fab: FracMan; dfnworks: polygons.dat; gocad: TSurf; "
-           "absent: by the ending .fab, .dat or .ts, by the titles, else lines in 2D and polygons in 3D");
+  s.choice(
+      format, "format", {"points", "lines", "polygons", "ellipses", "discs", "fab", "dfnworks", "gocad"},
+      "format of the file; points: id,x,y (3D: id,x,y,z), one point of the fracture id per line; lines: "
+      "id,x0,y0,x1,y1; polygons: x0,y0,z0,x1,y1,z1,...; ellipses: cx,cy,cz,r1,r2,rake,strike,dip in degrees; "
+      "discs: titles x,y,z,dip,dip direction or strike,radius; fab: FracMan; dfnworks: polygons.dat; gocad: TSurf; "
+      "absent: by the ending .fab, .dat or .ts, by the titles, else lines in 2D and polygons in 3D");
   s.entry(layers, "layers", "-", "layers with the fractures, in a drawing or a GeoPackage; empty: all layers");
   s.entry(unit, "unit", "m", base::positive(), "unit of the coordinates in the file, such as 1 mm; absent: 1 m");
   s.entry(window, "window", "m", base::any(),
-          "box that crops the fractures of the file: lowest, then highest coordinates, 4 in 2D, 6 in 3D; empty: the domain");
+          "box that crops the fractures of the file: lowest, then highest coordinates, 4 in 2D, 6 in 3D; empty: the "
+          "domain");
   s.entry(corners, "corners", "-", base::between(3, 100),
           "number of corners of the polygon of an ellipse or a disc; absent: 12 of a disc, 32 of an ellipse");
   s.named_sections(lines, "lines", "polylines in 2D");
@@ -121,11 +123,12 @@ void Network::describe(base::Section& s) {
   s.choice(unusable, "unusable fractures", {"refused", "left out"},
            "treatment of fractures outside of the domain, shorter than \"tolerance\" or \"minimum distance\", or "
            "without geometry in their file; refused: an error; left out: omitted and listed in the report");
-  s.choice(repair, "repair", {"report", "join", "drop"},
-           "treatment of fractures that cannot be meshed together; report: an error for each; join: gaps, near misses, "
-           "small angles and short features below \"tolerance\" are closed, merged or cut off; drop: the smaller fracture "
-           "of each conflict is left out; join and drop also leave out unusable and duplicate fractures, and list all "
-           "changes in FILE.msh.csv");
+  s.choice(
+      repair, "repair", {"report", "join", "drop"},
+      "treatment of fractures that cannot be meshed together; report: an error for each; join: gaps, near misses, "
+      "small angles and short features below \"tolerance\" are closed, merged or cut off; drop: the smaller fracture "
+      "of each conflict is left out; join and drop also leave out unusable and duplicate fractures, and list all "
+      "changes in FILE.msh.csv");
   if (s.complete() && fractures.empty()) s.fail("fractures", "missing; a network needs a set of fractures");
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Repairs of networks: repair_test.py PROGRAM ROOT MPIEXEC"""
 import csv
+import importlib.util
 import sys
 import unittest
 from pathlib import Path
@@ -142,6 +143,16 @@ class Surfaces(unittest.TestCase):
         self.assertLess(moved["a"], 1e-12)
         self.assertEqual(defects(plan, mesh), [])
 
+    def test_corner_near_a_surface_becomes_a_contact(self):
+        """The corner of a triangle moves onto a square within the plane of the triangle."""
+        corner = np.array([[0.5, 0.5, 0.506], [0.7, 0.5, 0.8], [0.3, 0.5, 0.8]])
+        plan, mesh, journal = repaired({"a": self.square(2, 0.5), "b": corner}, tolerance=0.01)
+        moved = {name.split('"')[1]: entry.moved for name, entry in journal.entries.items()}
+        self.assertAlmostEqual(moved["b"], 0.006, 9)
+        self.assertLess(moved["a"], 1e-12)
+        self.assertTrue((np.linalg.norm(mesh.points - [0.5, 0.5, 0.5], axis=1) < 1e-9).any())
+        self.assertEqual(defects(plan, mesh), [])
+
     def test_poking_corner_is_cut(self):
         wall = np.array([[0.5, 0.2, 0.35], [0.5, 0.506, 0.35], [0.5, 0.506, 0.65], [0.5, 0.2, 0.65]])
         plan, mesh, journal = repaired({"a": self.square(1, 0.5), "b": wall}, tolerance=0.01)
@@ -187,6 +198,44 @@ class Program(MeshTest):
         rows = list(csv.DictReader(open(self.folder / "net.msh.csv")))
         self.assertEqual([row["state"] for row in rows], ["kept", "left out", "left out", "kept"])
         self.assertAlmostEqual(float(rows[0]["area in the mesh [m^2]"]), np.pi * 0.09, 6)
+
+    @unittest.skipUnless(importlib.util.find_spec("meshio"), "requires python3-meshio")
+    def test_mesh_in_vtu(self):
+        """Two triangles in two regions and a fracture between them, written by meshio, become groups of gmsh."""
+        import meshio
+        points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+        cells = [("triangle", np.array([[0, 1, 2], [0, 2, 3]])), ("line", np.array([[0, 2]]))]
+        meshio.Mesh(points, cells, cell_data={"region": [np.array([1, 2]), np.array([5])]}).write(self.folder / "a.vtu")
+        self.assertIn("region 1, region 2, faces 5, west, east, south, north", self.mesh(self.folder / "a.vtu", output="a.msh"))
+        found = self.call("mesh-info", "a.msh", "--fractures", "faces 5")[0]
+        for name in ("region 1", "region 2", "faces 5", "west", "north"):
+            self.assertIn(name, found)
+
+    def test_surface_files(self):
+        """Polygons of dfnWorks and triangles of GOCAD become fractures; errors name line, column and value."""
+        box = {"domain": {"lower corner": [0.0] * 3, "upper corner": [1.0] * 3}, "relative_size": 0.5}
+        self.write("polygons.dat", "nPolygons: 2", "4 {0.2, 0.2, 0.5} {0.8, 0.2, 0.5} {0.8, 0.8, 0.5} {0.2, 0.8, 0.5}",
+                   "3 {0.2, 0.5, 0.2} {0.8, 0.5, 0.2} {0.5, 0.5, 0.8}")
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "polygons.dat"}}, **box))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.36 + 0.18, 9)
+        self.write("polygons.dat", "4 {0.2, 0.2, 0.5} {0.8, 0.2, x} {0.8, 0.8, 0.5} {0.2, 0.8, 0.5}")
+        reported = self.mesh(self.scene(dim=3, fractures={"set": {"file": "polygons.dat"}}, **box), expect=1)
+        self.assertIn('polygons.dat: line 1: "x" in column 7 is not a number', reported)
+        surface = ["GOCAD TSurf 1", "HEADER {", "name:north fault", "}", "ZPOSITIVE Depth", "TFACE", "VRTX 1 0.2 0.2 -0.5",
+                   "VRTX 2 0.8 0.2 -0.5", "VRTX 3 0.8 0.8 -0.5", "PVRTX 4 0.2 0.8 -0.5 7", "TRGL 1 2 3", "TRGL 1 3 4", "END"]
+        self.write("fault.ts", *surface)
+        self.mesh(self.scene(dim=3, fractures={"set": {"file": "fault.ts"}}, **box))
+        self.assertAlmostEqual(self.report()["sets"]["set"]["area"], 0.36, 9)
+        self.assertIn(b'"north fault"', (self.folder / "net.msh").read_bytes())
+        self.write("fault.ts", *surface[:-2], "TRGL 1 3 9", "END")
+        reported = self.mesh(self.scene(dim=3, fractures={"set": {"file": "fault.ts"}}, **box), expect=1)
+        self.assertIn("fault.ts: line 12: refers to the vertex 9, which is not defined above", reported)
+
+    def test_window(self):
+        self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.1,0.9,0.2,0.9")
+        scene = self.scene(fractures={"set": {"file": "net.csv", "window": [0.3, 0.3, 0.7, 0.7]}}, relative_size=0.5)
+        self.mesh(scene)
+        self.assertAlmostEqual(self.report()["sets"]["set"]["length"], 0.4, 9)
 
     def test_wrong_discs(self):
         for titles, row, why in (
