@@ -144,6 +144,7 @@ perf() {
     export PYTHONPATH=$build/python
   fi
   if [[ $name == peer && ${POREPY-} ]]; then needs+=("${peer_packages[@]}"); fi
+  if [[ $name == peer && ${OGS-} ]]; then needs+=(python3-scipy); fi
   if [[ -f $root/perf/$name/CMakeLists.txt ]]; then targets+=("perf_$name"); fi
   install_missing "${plot_packages[@]}" "${needs[@]}"
   build "${targets[@]}"

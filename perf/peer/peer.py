@@ -1,6 +1,8 @@
-"""Sprekk compared with PorePy: seconds, memory and Newton iterations on the same meshes, and seconds for the same error.
+"""Sprekk compared with PorePy and OpenGeoSys: seconds, memory and Newton iterations on the same meshes, and seconds for
+the same error.
 
-The environment variable POREPY names a checkout of PorePy; without it nothing is measured."""
+The environment variables POREPY and OGS name a checkout of PorePy and the program of OpenGeoSys. Parts that require a
+missing one are left out."""
 import glob
 import json
 import os
@@ -12,6 +14,7 @@ from perf.common import options as common
 from perf.common import table
 from perf.common.program import ROOT, Failed, checked
 from perf.peer import damage, ours, runs
+from perf.peer.ogs import ogs
 from perf.peer.ours import meshes
 from perf.peer.runs import FUNCTIONALS, THERMAL, Run
 
@@ -26,11 +29,11 @@ REQUESTS = {"tilted": (0.3, 0.1, 0.03), "crack": (0.03, 0.01, 0.003, 0.0005)}
 GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))
 FLOW = {"PorePy": (0.1, 0.05, 0.025, 0.0125), "Sprekk": (16, 32, 64, 128)}  # sizes of cells; cells along an edge
 SIDES = (("west", "east"), ("south", "north"), ("bottom", "top"))
-PARTS = ("contact", "heat", "flow", "damage")
+PARTS = ("contact", "heat", "flow", "damage", "ogs")
 RATIOS = {"tilted": "ratio", "heat": "ratio_thm"}
 QUICK = 2  # number of meshes of each
 # 4, 11 thousand tetrahedra: the number made by gmsh depends on the machine
-ASKED = {"ratio_4k": 100, "ratio_11k": 300, "ratio_thm_4k": 50, "ratio_equal_error": 50}
+ASKED = {"ratio_4k": 100, "ratio_11k": 300, "ratio_thm_4k": 50, "ratio_equal_error": 50, **ogs.ASKED}
 SLIP = "slip mean"
 COSTS = {"cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB": ".0f"}
 COLUMNS = {"mesh, code": "", **COSTS, **{name: ".4f" for name in FUNCTIONALS}}
@@ -225,17 +228,32 @@ def ratios(options, name, of):
             for their, our in zip(of["PorePy"], of["Sprekk"])}
 
 
+def available(options):
+    """Selected parts whose programs are there; prints how to get missing ones."""
+    parts = common.matching(options, PARTS)
+    options.porepy, options.ogs = (os.environ.get(name) and Path(os.environ[name]).absolute() for name in ("POREPY", "OGS"))
+    if options.porepy and not Path(options.porepy, "src/porepy").is_dir():
+        raise Failed(f"POREPY = {options.porepy} holds no src/porepy")
+    if options.ogs and not os.access(options.ogs, os.X_OK):
+        raise Failed(f"OGS = {options.ogs} is no program")
+    with_ogs = [part for part in parts if part == "ogs"]
+    with_porepy = [part for part in parts if part != "ogs"]
+    for needs, there, why in ((with_porepy, options.porepy, WHY), (with_ogs, options.ogs, ogs.WHY)):
+        if needs and not there:
+            print(why)
+    return with_porepy * bool(options.porepy) + with_ogs * bool(options.ogs)
+
+
 def main(words):
     options = common.parser("peer", __doc__).parse_args(words)
-    options.porepy = os.environ.get("POREPY") and Path(os.environ["POREPY"]).resolve()
-    if not options.porepy:
-        print(WHY)
+    parts = available(options)
+    if not parts:
         return 0
-    if not Path(options.porepy, "src/porepy").is_dir():
-        raise Failed(f"POREPY = {options.porepy} holds no src/porepy")
-    parts = common.matching(options, PARTS)
-    warm_up(options)
     same, found, total, wrong = {}, {}, {}, []
+    if "ogs" in parts:
+        total |= ogs.compare(options)
+    if parts != ["ogs"]:
+        warm_up(options)
     if "contact" in parts:
         print("values times 1000")
         same["tilted"] = compare_tilted(options, meshes_of(options, TILTED))
@@ -264,9 +282,10 @@ def main(words):
     if "damage" in parts:
         print("\ndamage at a point: the largest differences over the largest values, and seconds of an iteration of PorePy")
         wrong += damage.compare(options, theirs)
-    write(options.output / "peer.csv", same, found)
-    missed = [f"missed: {name} = {total.get(name, float('nan')):.0f}, required: {asked}" for name, asked in ASKED.items()
-              if not total.get(name, 0) >= asked and not (options.only and name not in total)]
-    print("\n".join(["", *wrong, *([] if options.quick else missed), f"peer.csv and pictures in {options.output}"]))
-    print(" ".join(f"{name}={value:.0f}" for name, value in total.items() if options.quick or name in ASKED or name == "ratio_adaptive"))
+    if parts != ["ogs"]:
+        write(options.output / "peer.csv", same, found)
+    missed = [f"missed: {name} = {total.get(name, float('nan')):.3g}, required: {asked}" for name, asked in ASKED.items()
+              if not total.get(name, 0) >= asked and (name in total or not (options.only or name in ogs.ASKED))]
+    print("\n".join(["", *wrong, *([] if options.quick else missed), f"tables and pictures in {options.output}"]))
+    print(" ".join(f"{name}={value:{'.2f' if name in ogs.ASKED else '.0f'}}" for name, value in total.items() if options.quick or name in ASKED or name == "ratio_adaptive"))
     return 1 if wrong else 0
