@@ -95,7 +95,8 @@ LinearReport ForcedSolve::solve_part(Part part, const BlockVector& b, BlockVecto
   auto of_part = fields::create_like(b);
   fields::copy(b, of_part);
   clear_other(of_part);
-  const auto report = solve_.solve_part(part, of_part, dx, std::max(accuracy_of_parts, tolerance()));
+  const Real accuracy = solve_.forcing() ? std::max(accuracy_of_parts, tolerance()) : tolerance();
+  const auto report = solve_.solve_part(part, of_part, dx, accuracy);
   if (report.converged) clear_other(dx);
   return report;
 }

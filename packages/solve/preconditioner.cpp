@@ -192,10 +192,14 @@ std::vector<std::vector<int>> groups_of(const PreconditionerOptions& options, co
   return groups;
 }
 
-/// Returns the groups in the order of the sweep. Throws an Error for an invalid order.
+/// Returns the groups in the order of the sweep, by default those of rate balances before the others. Throws an Error
+/// for an invalid order.
 std::vector<std::vector<int>> in_order(const SweepOptions& options, const std::vector<Block>& blocks,
-                                       const std::vector<std::vector<int>>& groups) {
-  if (options.order.empty()) return groups;
+                                       std::vector<std::vector<int>> groups) {
+  if (options.order.empty()) {
+    std::stable_partition(groups.begin(), groups.end(), [&](const auto& g) { return blocks[g.front()].balance; });
+    return groups;
+  }
   std::vector<Block> first;
   for (const auto& group : groups) first.push_back(blocks[group.front()]);
   std::vector<std::vector<int>> ordered;

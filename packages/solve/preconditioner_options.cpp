@@ -38,7 +38,7 @@ void SweepOptions::describe(base::Section& section) {
                  "type of sweep; forward: each group uses the corrections of earlier groups; symmetric: forward, then "
                  "backward; diagonal: no corrections of other groups");
   section.entry(order, "order", "-",
-                "first blocks of all groups, in the order of the sweep; empty: the order of the fields");
+                "first blocks of all groups, in the order of the sweep; empty: rate balances, then other fields");
 }
 
 const BlockOptions& PreconditionerOptions::of(const std::string& block) const {
