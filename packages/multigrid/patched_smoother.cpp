@@ -6,6 +6,7 @@
 
 #include "base/check.hpp"
 #include "base/over_ranks.hpp"
+#include "multigrid/chebyshev.hpp"
 
 namespace sprekk::multigrid {
 namespace {
@@ -20,7 +21,26 @@ void give(const View<Real*>& x, MultiVector& result) {
   Kokkos::deep_copy(to, Kokkos::subview(x, std::pair<std::size_t, std::size_t>(0, to.extent(0))));
 }
 
-}  // namespace
+/// Exact inverses of the diagonal blocks of a matrix on sets of rows, by dense LU factors.
+class Patches {
+ public:
+  explicit Patches(RowSets sets) : sets_(std::move(sets)), factors_(sets_.size()), pivots_(sets_.size()) {}
+
+  /// Factorises the blocks of A. Throws an Error if one is singular. Local.
+  void update(const NodeMatrix& A);
+
+  /// Solves A_pp dx = (b - A x)_p for each set p and adds dx to x; b [owned], x [all]. Collective.
+  void correct(const NodeMatrix& A, const ConstView<Real*>& b, const View<Real*>& x) const;
+
+  bool empty() const { return sets_.empty(); }
+  std::size_t bytes() const;
+
+ private:
+  RowSets sets_;
+  std::vector<std::vector<Real>> factors_;  // [set] column by column
+  std::vector<std::vector<int>> pivots_;
+  mutable std::vector<Real> residual_;
+};
 
 void Patches::update(const NodeMatrix& A) {
   std::vector<LocalIndex> place(A.graph.columns->n_all(), -1);  // [column] number in its set
@@ -67,34 +87,58 @@ std::size_t Patches::bytes() const {
   return sum;
 }
 
+}  // namespace
+
+struct PatchedSmoother::Parts {
+  NodeMatrix A;
+  Chebyshev chebyshev;
+  Patches patches;
+  bool has_patches;  // on any rank
+  View<Real*> x, r;  // [all], [owned]
+
+  Parts(const RCP<const Matrix>& matrix, RowSets sets)
+      : A(node_matrix(*matrix, 1)),
+        chebyshev(A),
+        patches(std::move(sets)),
+        has_patches(base::on_any_rank(*matrix->row_map()->getComm(), !patches.empty())),
+        x("x", A.graph.columns->n_all()),
+        r("r", A.graph.n_rows()) {}
+};
+
 PatchedSmoother::PatchedSmoother(const RCP<const Matrix>& A, RowSets sets)
-    : A_(node_matrix(*A, 1)),
-      chebyshev_(A_),
-      patches_(std::move(sets)),
-      has_patches_(base::on_any_rank(*A->row_map()->getComm(), !patches_.empty())),
-      x_("x", A_.graph.columns->n_all()),
-      r_("r", A_.graph.n_rows()) {}
+    : parts_(std::make_unique<Parts>(A, std::move(sets))) {}
+
+PatchedSmoother::~PatchedSmoother() = default;
 
 void PatchedSmoother::update(const RCP<const Matrix>& A, int degree) {
-  A_.value = node_matrix(*A, 1).value;
-  chebyshev_.update(A_, degree);
-  base::collectively(*A->row_map()->getComm(), [&] { patches_.update(A_); });
+  auto& [matrix, chebyshev, patches, has_patches, x, r] = *parts_;
+  matrix.value = node_matrix(*A, 1).value;
+  chebyshev.update(matrix, degree);
+  base::collectively(*A->row_map()->getComm(), [&] { parts_->patches.update(parts_->A); });
 }
 
-void PatchedSmoother::before(const MultiVector& b, MultiVector& x) const {
+void PatchedSmoother::widen() { parts_->chebyshev.widen(); }
+
+double PatchedSmoother::bytes() const {
+  return static_cast<double>(parts_->chebyshev.bytes() + parts_->patches.bytes());
+}
+
+void PatchedSmoother::before(const MultiVector& b, MultiVector& result) const {
+  const auto& [A, chebyshev, patches, has_patches, x, r] = *parts_;
   const auto from = column_of(b);
-  chebyshev_.apply(from, x_, false);
-  if (has_patches_) patches_.correct(A_, from, x_);
-  give(x_, x);
+  chebyshev.apply(from, x, false);
+  if (has_patches) patches.correct(A, from, x);
+  give(x, result);
 }
 
-void PatchedSmoother::after(const MultiVector& b, MultiVector& x) const {
-  const auto from = column_of(b), start = column_of(x);
-  Kokkos::deep_copy(Kokkos::subview(x_, std::pair<std::size_t, std::size_t>(0, start.extent(0))), start);
-  if (has_patches_) patches_.correct(A_, from, x_);
-  residual(A_, x_, from, r_);
-  chebyshev_.apply(r_, x_, true);
-  give(x_, x);
+void PatchedSmoother::after(const MultiVector& b, MultiVector& result) const {
+  const auto& [A, chebyshev, patches, has_patches, x, r] = *parts_;
+  const auto from = column_of(b), start = column_of(result);
+  Kokkos::deep_copy(Kokkos::subview(x, std::pair<std::size_t, std::size_t>(0, start.extent(0))), start);
+  if (has_patches) patches.correct(A, from, x);
+  residual(A, x, from, r);
+  chebyshev.apply(r, x, true);
+  give(x, result);
 }
 
 }  // namespace sprekk::multigrid

@@ -4,32 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "multigrid/chebyshev.hpp"
+#include "fields/matrix.hpp"
 
 namespace sprekk::multigrid {
 
+using fields::Matrix;
+using fields::MultiVector;
+
 using RowSets = std::vector<std::vector<LocalIndex>>;  ///< disjoint sets of owned rows with one unknown each
-
-/// Exact inverses of the diagonal blocks of a matrix on sets of rows, by dense LU factors.
-class Patches {
- public:
-  explicit Patches(RowSets sets) : sets_(std::move(sets)), factors_(sets_.size()), pivots_(sets_.size()) {}
-
-  /// Factorises the blocks of A. Throws an Error if one is singular. Local.
-  void update(const NodeMatrix& A);
-
-  /// Solves A_pp dx = (b - A x)_p for each set p and adds dx to x; b [owned], x [all]. Collective.
-  void correct(const NodeMatrix& A, const ConstView<Real*>& b, const View<Real*>& x) const;
-
-  bool empty() const { return sets_.empty(); }
-  std::size_t bytes() const;
-
- private:
-  RowSets sets_;
-  std::vector<std::vector<Real>> factors_;  // [set] column by column
-  std::vector<std::vector<int>> pivots_;
-  mutable std::vector<Real> residual_;
-};
 
 /// Smoother S of a matrix with one unknown per node:
 ///   before the coarse correction  x = C b,             then x += B (b - A x),
@@ -41,24 +23,22 @@ class PatchedSmoother {
  public:
   /// Collective.
   PatchedSmoother(const RCP<const Matrix>& A, RowSets sets);
+  ~PatchedSmoother();
 
   /// Prepares the values of a matrix with the same graph. Throws an Error on all ranks if a patch is singular.
   /// Collective.
   void update(const RCP<const Matrix>& A, int degree);
-  void widen() { chebyshev_.widen(); }  ///< see Chebyshev
+  void widen();  ///< see Chebyshev
 
   /// Vectors have one column. Collective.
   void before(const MultiVector& b, MultiVector& x) const;
   void after(const MultiVector& b, MultiVector& x) const;
 
-  double bytes() const { return static_cast<double>(chebyshev_.bytes() + patches_.bytes()); }
+  double bytes() const;
 
  private:
-  NodeMatrix A_;
-  Chebyshev chebyshev_;
-  Patches patches_;
-  bool has_patches_;   // on any rank
-  View<Real*> x_, r_;  // [all], [owned]
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace sprekk::multigrid
