@@ -1,5 +1,6 @@
 #include "solve/sweep.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprekk::solve {
@@ -110,6 +111,13 @@ void Sweep::prepare(const LinearSystem& system, SolverCost&) {
     parts.push_back({groups_[f], parts_[f]->inverse()});
   }
   inverse_ = rcp(new SweepOperator(system, type_, std::move(parts)));
+}
+
+int Sweep::coarse_size() const {
+  int smallest = 0;
+  for (const auto& part : parts_)
+    if (const int size = part->coarse_size(); size > 0) smallest = smallest == 0 ? size : std::min(smallest, size);
+  return smallest;
 }
 
 std::vector<SolverCost> Sweep::costs() const {

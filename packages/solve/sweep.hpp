@@ -14,7 +14,7 @@ class Sweep : public Preconditioner {
 
   bool is_symmetric() const override { return false; }
   bool can_be_reused() const override { return false; }
-  int coarse_size() const override { return parts_.front()->coarse_size(); }
+  int coarse_size() const override;  ///< the smallest of the parts that have one
   std::vector<SolverCost> costs() const override;
   void describe(Teuchos::ParameterList& blocks) const override;
 

@@ -15,15 +15,20 @@ COLUMNS = {"part": "", "cells": "d", "unknowns": "d", "steps": "d", "Newton": "g
 PARTS = ("mesh", "injection", "ranks", "restart", "doublet", "report")
 BOUNDS = {"mesh_s": 120, "krylov_max": 40, "newton_max": 12, "seconds_injection": 13 * 8, "seconds_doublet": 300, "report_s": 60}
 SAME = 1e-6  # largest difference of slip and moment between ranks, and after a restart, over the largest value
-QUICK_END = {"injection": "Time.end=1 d", "doublet": "Time.end=90 d"}
+QUICK_STEPS = {"injection": ("0.25 d", "0.5 d"), "doublet": ("30 d", "90 d")}
 BEFORE = 6  # number of steps before the restart
 LISTS = ("mean_slip", "moment")
+
+
+def until(times):
+    """Entries for steps that end at these times."""
+    return [f"Time.schedule={{{', '.join(times)}}}", f"Time.end={times[-1]}"]
 
 
 def entries(options, part, *more):
     """Entries of a run on the mesh of this measurement."""
     file = options.output / "site.msh"
-    return [f"Mesh file.path={file}", *([QUICK_END[part]] if options.quick else []), *options.set, *more]
+    return [f"Mesh file.path={file}", *(until(QUICK_STEPS[part]) if options.quick else []), *options.set, *more]
 
 
 def seconds(found):
@@ -87,7 +92,7 @@ class Site:
         if whole is None or len(whole.steps) <= BEFORE:
             return
         name = "restarted injection"
-        self.solve(name, "injection", more=[f"Time.end={whole.steps[BEFORE - 1]['time']} s"])
+        self.solve(name, "injection", more=until([f"{step['time']} s" for step in whole.steps[:BEFORE]]))
         self.compare("restart", self.solve(name, "injection", words=["--restart"], clear=False))
 
     def doublet(self):

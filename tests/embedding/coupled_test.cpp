@@ -22,7 +22,7 @@ TEST(CoupledFlow, IsTheSameByExchangeAndInOneJacobian) {
       const int cells = dim == 2 ? 8 : 4;
       auto scene = hosts::block(dim, cells);
       scene.solver.linear_solver.type = solver;
-      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarse_size =
+      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarsest =
           20;  // otherwise multigrid is a direct solver
       hosts::Exchange exchange(dim, cells, comm, scene);
       const auto together = hosts::make_together(scene, comm), sprekk = hosts::make_sprekk(scene, comm);

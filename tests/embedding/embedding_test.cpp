@@ -116,7 +116,7 @@ TEST(Grout, CarriesTheColumnThenTheWallsDo) {
   for (const std::string solver : {"direct", "iterative"})
     for_each_column(solver == "direct" ? all : some, [&](model::Scene scene, const model::ModuleFactory& modules) {
       scene.solver.linear_solver.type = solver;
-      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarse_size =
+      scene.solver.linear_solver.preconditioner.blocks["displacement"].multigrid.emplace().coarsest =
           20;  // otherwise multigrid is a direct solver
       model::Model model(scene, Tpetra::getDefaultComm(), modules);
       for (Real t : {1, 3}) {

@@ -316,7 +316,7 @@ TEST(MakeLinearSolver, ChoosesBySizeAndSaysWhy) {
   EXPECT_EQ(make_linear_solver(options, grid.problem.blocks()).reason, "direct: 2D with 72 unknowns; direct up to 72");
   options.direct_limit_2d = 71;
   const auto name = grid.problem.blocks()[0].name;
-  options.preconditioner.blocks[name].multigrid.emplace().coarse_size =
+  options.preconditioner.blocks[name].multigrid.emplace().coarsest =
       20;  // otherwise it would have the size of a coarsest level
   const auto chosen = make_linear_solver(options, grid.problem.blocks());
   EXPECT_EQ(chosen.reason, "iterative: 2D with 72 unknowns; direct up to 71");
