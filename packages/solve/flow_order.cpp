@@ -48,17 +48,12 @@ Sources sources_of(const LocalRows& A) {
 class Components {
  public:
   explicit Components(const Sources& sources)
-      : sources_(sources), of_row(sources.start.size() - 1, -1), index_(of_row.size(), -1), low_(of_row.size()) {
-    for (LocalIndex i = 0; i < static_cast<LocalIndex>(of_row.size()); ++i)
+      : sources_(sources), of_row_(sources.start.size() - 1, -1), index_(of_row_.size(), -1), low_(of_row_.size()) {
+    for (LocalIndex i = 0; i < static_cast<LocalIndex>(of_row_.size()); ++i)
       if (index_[i] < 0) visit_from(i);
   }
-  LocalIndex n = 0;
-
- private:
-  const Sources& sources_;
-
- public:
-  std::vector<LocalIndex> of_row;
+  LocalIndex n() const { return n_; }
+  const std::vector<LocalIndex>& of_row() const { return of_row_; }
 
  private:
   void enter(LocalIndex i) {
@@ -75,7 +70,7 @@ class Components {
         const LocalIndex j = sources_.row[next++];
         if (index_[j] < 0)
           enter(j);
-        else if (of_row[j] < 0)
+        else if (of_row_[j] < 0)
           low_[i] = std::min(low_[i], index_[j]);
         continue;
       }
@@ -91,14 +86,15 @@ class Components {
     do {
       i = open_.back();
       open_.pop_back();
-      of_row[i] = n;
+      of_row_[i] = n_;
     } while (i != root);
-    ++n;
+    ++n_;
   }
 
-  std::vector<LocalIndex> index_, low_, open_;
+  const Sources& sources_;
+  std::vector<LocalIndex> of_row_, index_, low_, open_;
   std::vector<std::pair<LocalIndex, std::size_t>> path_;  // rows and their next source
-  LocalIndex n_entered_ = 0;
+  LocalIndex n_ = 0, n_entered_ = 0;
 };
 
 }  // namespace
@@ -108,11 +104,11 @@ FlowOrder flow_order(const LocalRows& A) {
   FlowOrder order;
   for (LocalIndex i = 0; i < A.n(); ++i) order.n_directed += sources.start[i + 1] > sources.start[i];
   const Components components(sources);
-  std::vector<LocalIndex> next(components.n + 1, 0);  // [n - 1 - component] next position
-  for (const LocalIndex c : components.of_row) ++next[components.n - c];
-  for (LocalIndex c = 0; c < components.n; ++c) next[c + 1] += next[c];
+  std::vector<LocalIndex> next(components.n() + 1, 0);  // [n - 1 - component] next position
+  for (const LocalIndex c : components.of_row()) ++next[components.n() - c];
+  for (LocalIndex c = 0; c < components.n(); ++c) next[c + 1] += next[c];
   order.row.resize(A.n());
-  for (LocalIndex i = 0; i < A.n(); ++i) order.row[next[components.n - 1 - components.of_row[i]]++] = i;
+  for (LocalIndex i = 0; i < A.n(); ++i) order.row[next[components.n() - 1 - components.of_row()[i]]++] = i;
   return order;
 }
 
