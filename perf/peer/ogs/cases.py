@@ -59,8 +59,7 @@ def cross(k):
 def strip(columns, rows, first=None, tight=False):
     """HydroMechanics/single_fracture: injection at one end of a fracture of 25 m, with steps of 10 s.
 
-    `first`: height of the rows at the fracture, m; otherwise rows are equal. tight: impermeable rock, Biot coefficient
-    0."""
+    `first`: height of the rows at the fracture, m; otherwise rows are equal. tight: impermeable rock."""
     length, height = BAR["length"], BAR["height"]
     points, sides = corners(length, height)
     points |= {"IN": (0, height / 2), "OUT": (length, height / 2)}
@@ -79,7 +78,7 @@ def strip(columns, rows, first=None, tight=False):
     made = project.project("mesh.vtu", law, variables, parameters, (BAR["steps"], BAR["dt"]), criterion,
                            project.SPARSE_LU, media)
     grid = meshes.layered(length, height, columns, rows, first)
-    sets = ("Materials.rock.permeability={1e-30}", "Materials.rock.Biot coefficient=0") if tight else ()
+    sets = ("Materials.rock.permeability={0}",) if tight else ()
     return Case(meshes.Mesh(grid, {"fracture": ((rows // 2, 0), (rows // 2, columns))}), 2, made,
                 project.geometry(points, sides), HERE / "strip.xml",
                 2 * (2 * columns + 1) + (columns + 1) * (1 if tight else rows + 1), sets)
