@@ -28,7 +28,7 @@ def until(times):
 
 def entries(options, part, *more):
     """Entries of a run on the mesh of this measurement."""
-    file = options.output / "site.msh"
+    file = options.output / "mesh/site.msh"
     return [f"Mesh file.path={file}", *(until(QUICK_STEPS[part]) if options.quick else []), *options.set, *more]
 
 
@@ -78,7 +78,7 @@ class Site:
 
     def mesh(self):
         begin = time.monotonic()
-        mesh(self.options.binary, FOLDER / "injection.xml", self.options.output / "site.msh", self.options.set)
+        mesh(self.options.binary, FOLDER / "injection.xml", self.options.output / "mesh/site.msh", self.options.set)
         self.total["mesh_s"] = time.monotonic() - begin
 
     def injection(self):
@@ -111,7 +111,7 @@ class Site:
 def main(words):
     options = common.parser("site", __doc__, only="parts").parse_args(words)
     parts = common.matching(options, PARTS)
-    if "mesh" not in parts and not (options.output / "site.msh").is_file():
+    if "mesh" not in parts and not (options.output / "mesh/site.msh").is_file():
         parts = ["mesh", *parts]
     site = Site(options)
     for part in parts:
