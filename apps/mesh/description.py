@@ -264,7 +264,7 @@ class Network:
         others = " and ".join(name for name in names if name != smallest.name)
         self.resolved.update(names)
         if self.repair == "join" and self.dim == 3 and len(larger) == 1 and len(names) == 2:
-            part = self.part_beside(smallest, larger[0])
+            part = self.part_clear_of(smallest, larger[0])
             if part is not None:
                 lost = measure_of(smallest.points) - measure_of(part)
                 self.journal.note(smallest, f"{lost:.3g} m^2 are cut off at a small angle to {others}")
@@ -273,7 +273,7 @@ class Network:
         self.journal.leave_out(smallest, f"in conflict with {others or 'itself'}", "conflict")
         self.fractures = [one for one in self.fractures if one is not smallest]
 
-    def part_beside(self, smallest, other):
+    def part_clear_of(self, smallest, other):
         """Returns the larger part of a fracture, without that near another at a small angle, or None."""
         if angle_of_planes(Plane(smallest.points), Plane(other.points)) > TRIMMED_ANGLE or smallest.name in self.trimmed:
             return None

@@ -1,7 +1,7 @@
 """A site from its file of fractures to the report: mesh, injection and shut-in, 1 and 2 ranks, restart, heat doublet.
 
-The scenes are injection.xml and doublet.xml beside this file. Seconds are CPU seconds of the phases of a run on one rank
-(mesh and report: seconds of the clock)."""
+The scenes are injection.xml and doublet.xml in this folder. Seconds are CPU seconds of the phases of a run on one rank.
+Those of mesh and report are seconds of the clock."""
 import sys
 import time
 from statistics import median
