@@ -9,7 +9,7 @@ install(DIRECTORY apps/export apps/fit apps/mesh apps/network apps/plot apps/rep
   FILES_MATCHING PATTERN "*.py" PATTERN "*.css" PATTERN __pycache__ EXCLUDE)
 install(FILES docs/use/reference.md DESTINATION ${home}/docs/use COMPONENT program)
 install(DIRECTORY xml/ DESTINATION ${home}/xml COMPONENT program)
-install(FILES docs/read_results.py docs/shear_test.xml docs/two_rocks.xml ${CMAKE_BINARY_DIR}/sprekk.rng
+install(FILES docs/read_results.py docs/shear_test.xml docs/two_rocks.xml docs/disc_pressure.xml ${CMAKE_BINARY_DIR}/sprekk.rng
   DESTINATION ${home}/docs COMPONENT program)
 install(FILES ${CMAKE_BINARY_DIR}/report/viewer.js.bundle DESTINATION ${home}/report COMPONENT program OPTIONAL)
 install(FILES ${CMAKE_BINARY_DIR}/report/viewer.licenses DESTINATION share/doc/sprekk COMPONENT program OPTIONAL)

@@ -59,10 +59,10 @@ inline model::Scene block(int dim, int cells) {
   joint.residual_aperture = minimum;
   scene.bulk.material = "rock";
   scene.fractures["fracture"].material = "joint";
-  const std::vector<std::string> held = {"west", "south", "bottom"}, pressed = {"east", "north", "top"};
+  const std::vector<std::string> constrained = {"west", "south", "bottom"}, pressed = {"east", "north", "top"};
   for (int axis = 0; axis < dim; ++axis) {
-    auto& low = scene.boundary_conditions[held[axis]];
-    low.boundary = held[axis];
+    auto& low = scene.boundary_conditions[constrained[axis]];
+    low.boundary = constrained[axis];
     low.displacement.assign(dim, base::Expression("free"));
     low.displacement[axis] = 0;
     auto& high = scene.boundary_conditions[pressed[axis]];

@@ -25,26 +25,42 @@ bool DirichletCondition::applies_at(const std::array<Real, 3>& x) const {
   return inside;
 }
 
+void for_each_facet_on_fracture(const mesh::Mesh& mesh, const DirichletCondition& condition,
+                                const std::function<void(LocalIndex, const std::array<Real, 3>&)>& visit) {
+  const int n = mesh::n_face_corners(mesh.shape);
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces(); ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    if (face.fracture != condition.fracture) continue;
+    std::array<bool, 4> inside{};
+    for (int k = 0; k < n; ++k) inside[k] = condition.applies_at(mesh::face_corner(mesh, f, k));
+    for (int k = 0; k < n; ++k)
+      if (inside[k] && (mesh.dim() == 2 || inside[(k + 1) % n]))
+        visit(mesh.facets->ridge[f * n + k], mesh::ridge_centre(mesh, f, k));
+    if (std::all_of(inside.begin(), inside.begin() + n, [](bool one) { return one; }))
+      visit(mesh.facets->fracture_face[f], face.centre);
+  }
+}
+
 namespace {
 
 /// Collects entries, one per unknown. If several faces apply a condition to one unknown, the smallest direction is
 /// used. The result does not depend on the order of the faces.
 class Collector {
  public:
-  Collector(Held& held, GlobalIndex n_owned) : held_(held), n_owned_(n_owned) {}
-  void add(const Held::Entry& entry) {
+  Collector(Constrained& constrained, GlobalIndex n_owned) : constrained_(constrained), n_owned_(n_owned) {}
+  void add(const Constrained::Entry& entry) {
     if (entry.unknown < 0 || entry.unknown >= n_owned_) return;
-    const auto [found, is_new] = first_.emplace(entry.unknown, static_cast<int>(held_.entries.size()));
+    const auto [found, is_new] = first_.emplace(entry.unknown, static_cast<int>(constrained_.entries.size()));
     if (is_new)
-      held_.entries.push_back(entry);
-    else if (auto& known = held_.entries[found->second]; known.condition != entry.condition)
-      held_.repeated.emplace_back(found->second, entry);
+      constrained_.entries.push_back(entry);
+    else if (auto& known = constrained_.entries[found->second]; known.condition != entry.condition)
+      constrained_.repeated.emplace_back(found->second, entry);
     else
       known.side = std::min(known.side, entry.side);
   }
 
  private:
-  Held& held_;
+  Constrained& constrained_;
   GlobalIndex n_owned_;
   std::unordered_map<GlobalIndex, int> first_;  // entry of an unknown
 };
@@ -69,13 +85,14 @@ mesh::Vector centre_of(const mesh::Mesh& mesh, const mesh::Mesh::BoundaryFace& f
 /// Returns the unknowns below n_owned that conditions prescribe, on a whole mesh or the part of a rank. The nodes are
 /// those of boundary faces. entity_of(face, node) returns the entity with the unknowns, or -1.
 template <class AnyMesh, class EntityOf>
-Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
-               const std::vector<DirichletCondition>& conditions, const EntityOf& entity_of) {
-  Held held;
-  Collector collector(held, n_owned);
+Constrained find_constrained(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
+                             const std::vector<DirichletCondition>& conditions, const EntityOf& entity_of) {
+  Constrained constrained;
+  Collector collector(constrained, n_owned);
   const auto has_copies = nodes_with_copies(mesh);
   const auto add = [&](GlobalIndex entity, GlobalIndex node, int condition, int component, const auto& face) {
-    Held::Entry entry{entity < 0 ? -1 : entity * n_components + component, condition, component, place(mesh, node)};
+    Constrained::Entry entry{entity < 0 ? -1 : entity * n_components + component, condition, component,
+                             place(mesh, node)};
     if (has_copies[node]) entry.side = centre_of(mesh, face) - entry.x;
     if (conditions[condition].applies_at(entry.x)) collector.add(entry);
   };
@@ -90,27 +107,27 @@ Held find_held(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
           if (conditions[k].values[c]) add(entity_of(face, node), node, k, c, face);
       }
     }
-  return held;
+  return constrained;
 }
 
 template <class AnyMesh>
-Held find_held_nodes(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
-                     const std::vector<DirichletCondition>& conditions) {
-  return find_held(mesh, n_components, n_owned, conditions,
-                   [&](const auto&, auto node) { return GlobalIndex(mesh.free_node(node)); });
+Constrained find_constrained_nodes(const AnyMesh& mesh, int n_components, GlobalIndex n_owned,
+                                   const std::vector<DirichletCondition>& conditions) {
+  return find_constrained(mesh, n_components, n_owned, conditions,
+                          [&](const auto&, auto node) { return GlobalIndex(mesh.free_node(node)); });
 }
 
 /// Returns the prescribed unknowns of a field on cells, with the cell centres.
-Held find_held_cells(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
-                     const std::vector<DirichletCondition>& conditions) {
-  Held held;
-  Collector collector(held, n_owned);
+Constrained find_constrained_cells(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
+                                   const std::vector<DirichletCondition>& conditions) {
+  Constrained constrained;
+  Collector collector(constrained, n_owned);
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k)
     for (LocalIndex cell = 0; cell < mesh.n_owned_cells; ++cell)
       for (int c = 0; c < n_components; ++c)
         if (mesh.cell_region[cell] == conditions[k].region && conditions[k].values[c])
           collector.add({GlobalIndex(cell) * n_components + c, k, c, mesh::cell_centre(mesh, cell)});
-  return held;
+  return constrained;
 }
 
 /// Calls visit(facet, centre) for the facets in a region, once or twice each.
@@ -132,16 +149,20 @@ void for_each_facet_in(const mesh::Mesh& mesh, int region, const Visit& visit) {
 }
 
 /// Returns the prescribed unknowns of a field on facets, with the facet centres.
-Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
-                      const std::vector<DirichletCondition>& conditions) {
-  Held held;
-  Collector collector(held, n_owned);
+Constrained find_constrained_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_owned,
+                                    const std::vector<DirichletCondition>& conditions) {
+  Constrained constrained;
+  Collector collector(constrained, n_owned);
   const auto add = [&](int k, LocalIndex facet, const mesh::Vector& x) {
     for (int c = 0; c < n_components && facet >= 0; ++c)
       if (conditions[k].values[c]) collector.add({GlobalIndex(facet) * n_components + c, k, c, x});
   };
   for (int k = 0; k < static_cast<int>(conditions.size()); ++k) {
     const int boundary = conditions[k].boundary, region = conditions[k].region, fracture = conditions[k].fracture;
+    if (boundary < 0 && fracture >= 0) {
+      for_each_facet_on_fracture(mesh, conditions[k], [&](LocalIndex facet, const auto& x) { add(k, facet, x); });
+      continue;
+    }
     if (boundary < 0) {
       for_each_facet_in(mesh, region, [&](LocalIndex facet, const mesh::Vector& x) { add(k, facet, x); });
       continue;
@@ -155,21 +176,21 @@ Held find_held_facets(const mesh::Mesh& mesh, int n_components, LocalIndex n_own
         add(k, mesh.facets->ridge[rim.face * mesh::n_face_corners(mesh.shape) + rim.ridge],
             mesh::ridge_centre(mesh, rim.face, rim.ridge));
   }
-  return held;
+  return constrained;
 }
 
 /// Returns the prescribed unknowns of a field. Fields on enriched nodes: only faces with a tip, since the enrichment is
 /// zero on other faces.
-Held find_held(const mesh::Mesh& mesh, const fields::Layout& layout,
-               const std::vector<DirichletCondition>& conditions) {
+Constrained find_constrained(const mesh::Mesh& mesh, const fields::Layout& layout,
+                             const std::vector<DirichletCondition>& conditions) {
   const int n_components = layout.field().n_components;
   if (layout.field().entity == fields::Entity::cell)
-    return find_held_cells(mesh, n_components, layout.n_owned(), conditions);
+    return find_constrained_cells(mesh, n_components, layout.n_owned(), conditions);
   if (layout.field().entity == fields::Entity::facet)
-    return find_held_facets(mesh, n_components, layout.n_owned(), conditions);
+    return find_constrained_facets(mesh, n_components, layout.n_owned(), conditions);
   if (layout.field().entity != fields::Entity::enriched_node)
-    return find_held_nodes(mesh, n_components, layout.n_owned(), conditions);
-  return find_held(mesh, n_components, layout.n_owned(), conditions, [&](const auto& face, LocalIndex node) {
+    return find_constrained_nodes(mesh, n_components, layout.n_owned(), conditions);
+  return find_constrained(mesh, n_components, layout.n_owned(), conditions, [&](const auto& face, LocalIndex node) {
     const auto nodes = mesh::face_nodes(mesh.shape)[face.local_face];
     const bool has_tip = std::any_of(nodes.begin(), nodes.begin() + mesh::n_face_nodes(mesh.shape), [&](int k) {
       return mesh.tip[mesh.cells[face.cell * mesh.nodes_per_cell() + k]] != 0;
@@ -186,19 +207,19 @@ Real largest_of(const std::vector<Real>& values) {
 
 }  // namespace
 
-std::vector<Real> prescribed_values(const Held& held, const std::vector<DirichletCondition>& conditions, Real t,
-                                    std::vector<std::string>& conflicts) {
-  const auto value = [&](const Held::Entry& entry) {
+std::vector<Real> prescribed_values(const Constrained& constrained, const std::vector<DirichletCondition>& conditions,
+                                    Real t, std::vector<std::string>& conflicts) {
+  const auto value = [&](const Constrained::Entry& entry) {
     return one_sided(*conditions[entry.condition].values[entry.component], entry.x, entry.side, t);
   };
   std::vector<Real> values;
-  for (const auto& entry : held.entries) values.push_back(value(entry));
+  for (const auto& entry : constrained.entries) values.push_back(value(entry));
   const Real largest = largest_of(values);
   std::map<std::array<int, 3>, std::string> found;  // one message per pair of conditions and component
-  for (const auto& [number, entry] : held.repeated) {
+  for (const auto& [number, entry] : constrained.repeated) {
     const Real first = values[number], second = value(entry);
     if (std::abs(first - second) <= 1e-12 * largest) continue;
-    const int condition = held.entries[number].condition;
+    const int condition = constrained.entries[number].condition;
     found.try_emplace(
         {condition, entry.condition, entry.component},
         fmt::format(
@@ -215,35 +236,36 @@ std::vector<Real> prescribed_values(const Held& held, const std::vector<Dirichle
 std::vector<std::string> find_conflicts(const mesh::GlobalMesh& mesh, const std::vector<DirichletCondition>& conditions,
                                         Real t) {
   std::vector<std::string> conflicts;
-  prescribed_values(find_held_nodes(mesh, mesh.dim(), mesh.n_free_nodes() * mesh.dim(), conditions), conditions, t,
-                    conflicts);
+  prescribed_values(find_constrained_nodes(mesh, mesh.dim(), mesh.n_free_nodes() * mesh.dim(), conditions), conditions,
+                    t, conflicts);
   return conflicts;
 }
 
 Constraints::Constraints(const mesh::Mesh& mesh, const fields::Layout& layout,
                          std::vector<DirichletCondition> conditions)
     : conditions_(std::move(conditions)),
-      held_(find_held(mesh, layout, conditions_)),
+      constrained_(find_constrained(mesh, layout, conditions_)),
       mask_("constrained", layout.n_owned()),
       values_("prescribed", layout.n_owned()) {
   const base::HostTable<char*> mask(mask_);
-  for (const auto& entry : held_.entries) mask(entry.unknown) = 1;
+  for (const auto& entry : constrained_.entries) mask(entry.unknown) = 1;
   mask.on_device();
 }
 
 std::vector<contact::Support> Constraints::supports() const {
   std::vector<contact::Support> supports;
-  for (const auto& entry : held_.entries) supports.push_back({static_cast<LocalIndex>(entry.unknown), entry.component});
+  for (const auto& entry : constrained_.entries)
+    supports.push_back({static_cast<LocalIndex>(entry.unknown), entry.component});
   return supports;
 }
 
 void Constraints::evaluate(Real t) {
   std::vector<std::string> conflicts;
-  const auto prescribed = prescribed_values(held_, conditions_, t, conflicts);
+  const auto prescribed = prescribed_values(constrained_, conditions_, t, conflicts);
   SPREKK_CHECK(conflicts.empty(), "{}", fmt::join(conflicts, "\n"));
   largest_ = largest_of(prescribed);
   const base::HostTable<Real*> values(values_);
-  for (std::size_t k = 0; k < prescribed.size(); ++k) values(held_.entries[k].unknown) = prescribed[k];
+  for (std::size_t k = 0; k < prescribed.size(); ++k) values(constrained_.entries[k].unknown) = prescribed[k];
   values.on_device();
 }
 

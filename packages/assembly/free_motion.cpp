@@ -58,7 +58,7 @@ class Gram {
  public:
   Gram(const GlobalMesh& mesh, const mesh::Bodies& bodies, const std::vector<DirichletCondition>& conditions)
       : mesh_(mesh), bodies_(bodies), frames_(frames(mesh, bodies)) {
-    add_held(conditions);
+    add_constrained(conditions);
     add_shared();
   }
 
@@ -74,7 +74,7 @@ class Gram {
     add_product(blocks_[{body_a, body_b}], a, b, sign);
   }
 
-  void add_held(const std::vector<DirichletCondition>& conditions) {
+  void add_constrained(const std::vector<DirichletCondition>& conditions) {
     for (const auto& condition : conditions) {
       for (const auto& face : mesh_.boundary_faces) {
         if (face.boundary != condition.boundary ||
@@ -85,8 +85,8 @@ class Gram {
         for (int k = 0; k < mesh::n_face_nodes(mesh_.shape); ++k)
           for (int i = 0; i < mesh_.dim(); ++i) {
             if (!condition.values[i] || !condition.applies_at(mesh::point(mesh_, nodes[k]))) continue;
-            const RigidRow held = row(body, nodes[k], i);
-            add(body, held, body, held, 1);
+            const RigidRow constrained = row(body, nodes[k], i);
+            add(body, constrained, body, constrained, 1);
           }
       }
     }

@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "base/host_table.hpp"
+#include "mesh/intersections.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -191,6 +192,16 @@ Stencil cell_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& fie
       const auto [f, side] = sides[s];
       table.add((on_cells ? mesh.fracture_faces[f].cell[side] : mesh.facets->fracture_face[f]) * width);
     }
+    return {table.finish(), width};
+  }
+  if (!on_cells && loop == Loop::junctions) {
+    std::vector<LocalIndex> facets;
+    for (const auto& junction : mesh::junctions(mesh))
+      mesh::for_each_pair(junction, [&](const auto& a, const auto& b) {
+        facets.insert(facets.end(), {a.facet, b.facet});
+      });
+    TableBuilder table(facets.size() / 2, 2);
+    for (const LocalIndex facet : facets) table.add(facet * width);
     return {table.finish(), width};
   }
   if (on_cells && loop == Loop::neighbours) {

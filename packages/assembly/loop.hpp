@@ -23,6 +23,7 @@ enum class Loop {
   fracture_cells,  ///< all local fracture faces, as cells of the fracture
   boundary_faces,  ///< boundary faces of all local cells
   neighbours,      ///< pairs of local cells with a common face that is not on a fracture
+  junctions,       ///< pairs of edges at points of intersections in 3D; see mesh::for_each_pair()
   tip_cells,       ///< cells with a crack tip; see mesh::Mesh::tip
   tip_sides        ///< fracture_sides whose cell has a crack tip
 };
@@ -76,6 +77,7 @@ class Writers {
 /// | fracture_faces            | -              | the fracture face                                                 |
 /// | fracture_cells            | -              | the fracture face, then its ridges                                |
 /// | neighbours                | both cells     | -                                                                 |
+/// | junctions                 | -              | both ridges                                                       |
 ///
 /// A two-sided field has 2 dim components per face: side minus, then side plus. A field on enriched nodes is absent
 /// (first = -1) on nodes without enrichment, and in fracture_faces on faces without a tip. Operators read zero for

@@ -49,9 +49,10 @@ enum class NearNullSpace { none, rigid_motions, constants };
 /// of boundaries. Empty: no output.
 struct Reactions {
   std::string name = "";
-  std::string moments = "";  ///< for forces: sum x cross f
-  std::string regions = "";  ///< entry for conditions in regions
-  std::string unit = "";     ///< unit of the sums
+  std::string moments = "";    ///< for forces: sum x cross f
+  std::string regions = "";    ///< entry for conditions in regions
+  std::string unit = "";       ///< unit of the sums
+  std::string fractures = "";  ///< entry for conditions on fractures
 };
 
 /// Field that a module adds to the problem. It becomes a block of the same name.
@@ -157,6 +158,7 @@ struct Declaration {
   std::vector<std::string> carries;  ///< balances with advection by another flow; the flow may begin within a step, so
                                      ///< the present Jacobian's diagonal measures their rows
   bool stores = false;               ///< its balances contain State::rate times the storage
+  bool evolves = false;              ///< its rows contain State::dt; shorter steps are easier to solve
   bool linear = false;               ///< constant, symmetric Jacobian: assembled once; the residual is K x + r(0, t)
 };
 
@@ -185,6 +187,7 @@ struct State {
   Real t = 0;
   Real rate = 0;    ///< factor of the storage increase in the step, 1/s: Rates::now
   Real before = 0;  ///< Rates::before; the framework subtracts the storage increase of the previous step
+  Real dt = 0;      ///< length of the step, s; 0 outside of a step
   contact::Regularisation contact = {};
   ConstView<Real*> coefficients = {};  ///< [local fracture face] see BlockProblem::lag(); empty: computed from x
   std::vector<ConstView<Real*>> x;

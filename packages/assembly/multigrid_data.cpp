@@ -65,7 +65,7 @@ RCP<MultiVector> rigid_body_modes(const RCP<const fields::Map>& map, const Multi
 
 void set_multigrid(const mesh::Mesh& mesh, NearNullSpace near_null_space, const fields::Layout& layout,
                    fields::Block& block) {
-  if (layout.field().entity == Entity::facet && layout.field().n_components == 1 && !block.advected) {
+  if (layout.field().entity == Entity::facet && layout.field().n_components == 1) {
     const auto corners = facet_corners(mesh, layout);
     block.interpolation = corners.interpolation;
     block.coordinates = corners.places;

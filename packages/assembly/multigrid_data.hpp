@@ -6,7 +6,7 @@
 namespace sprekk::assembly {
 
 /// Sets coordinates, near_null_space, interpolation and patches of a block with a near-null space. A block on facets
-/// has the last two if it is not advected. Collective.
+/// has the last two. Collective.
 void set_multigrid(const mesh::Mesh& mesh, NearNullSpace near_null_space, const fields::Layout& layout,
                    fields::Block& block);
 

@@ -105,14 +105,16 @@ fields::StepErrors RateErrors::of_step(const fields::BlockVector& x, Real dt, bo
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     auto& rates = blocks_[k];
     const Real speed = std::sqrt(squares[2 * k] / rates.n), bent = std::sqrt(squares[2 * k + 1] / rates.n);
-    const Real shrinks = n_rates_ > 0 && rates.speed > 0 ? std::min<Real>(1, speed / rates.speed) : 1;
+    const bool changes = n_rates_ > 0 && rates.speed > 0;
+    const Real shrinks = changes ? std::min<Real>(1, speed / rates.speed) : 1,
+               grows = changes && speed > rates.speed ? rates.speed / speed : 1;
     const Real growth = n_rates_ > 0 && rates.largest > 0 && elapsed_ > 0
                             ? std::log(std::max<Real>(1, largest[k] / rates.largest)) / std::log(1 + dt / elapsed_)
                             : 0;
     const Real ahead = std::clamp<Real>(duration_ / (elapsed_ + dt), 1, 10);
     rates.largest = std::max(rates.largest, largest[k]);
     const Real size = std::max(rates.largest * std::pow(ahead, std::min<Real>(growth, 0.5)), minimum[rates.block]);
-    rates.lasts = shrinks * rates.lasts + dt;
+    rates.lasts = shrinks * grows * rates.lasts + dt;
     rates.speed = speed;
     const Real own = known ? constant * bent : 0;
     rates.sum = shrinks * rates.sum + own;

@@ -15,8 +15,8 @@ namespace sprekk::assembly {
 ///   Euler: 1/2 dt^2 |x''|, with x'' = 2 f_2, f_2 = (r - r_1)/(dt + dt_1)
 ///   BDF2: (1 + w)^2/(6 w (1 + 2w)) dt^3 |x'''|, with x''' = 6 (f_2 - f_2 of the step before)/(dt + dt_1 + dt_2),
 ///   w = dt/dt_1
-/// Step errors e accumulate to E while perturbations persist, for the time tau:
-///   E = s E_1 + e,  tau = s tau_1 + dt,  s = min(1, |r|/|r_1|)
+/// Step errors e accumulate to E while perturbations persist. The present rates have lasted for the time tau:
+///   E = s E_1 + e,  tau = min(s, |r_1|/|r|) tau_1 + dt,  s = min(1, |r|/|r_1|)
 /// Steps with the present accuracy would accumulate e tau/dt. The estimate is the geometric mean of E and e tau/dt.
 /// |.| is the root mean square over the block, divided by the largest change c of an unknown since the start. While c
 /// grows like t^p, its extrapolation c min(10, T/t)^min(p, 1/2) is used, with the end T. Otherwise, unknowns that start

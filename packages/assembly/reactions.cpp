@@ -29,7 +29,10 @@ std::vector<Reaction> sum_prescribed(const Structure& structure, const fields::B
       const auto sums = all.begin() + static_cast<std::ptrdiff_t>(c) * width;
       result.push_back({conditions[c].name, conditions[c].field, {sums, sums + n_components}});
       result.back().called = unknown.reactions;
-      if (conditions[c].boundary < 0) result.back().region = conditions[c].region;
+      if (conditions[c].boundary < 0) {
+        result.back().region = conditions[c].region;
+        result.back().fracture = conditions[c].fracture;
+      }
       std::copy_n(sums + n_components, 3, result.back().moment.begin());
     }
   }

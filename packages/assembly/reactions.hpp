@@ -13,9 +13,9 @@ namespace sprekk::assembly {
 /// supports on the body.
 struct Reaction {
   std::string condition, field;
-  std::vector<Real> force;       ///< [component], in the unit of the rows, e.g. N (2D: N/m)
-  std::array<Real, 3> moment{};  ///< sum x cross f about the origin, N m; in 2D only the last component, N
-  int region = -1;               ///< region of the condition; -1: on a boundary
+  std::vector<Real> force;         ///< [component], in the unit of the rows, e.g. N (2D: N/m)
+  std::array<Real, 3> moment{};    ///< sum x cross f about the origin, N m; in 2D only the last component, N
+  int region = -1, fracture = -1;  ///< place of the condition; -1 both: on a boundary
   Reactions called = {};
 };
 

@@ -153,7 +153,10 @@ Scales ranges_of_balances(const Comm& comm, const std::vector<Unknown>& unknowns
   return ranges;
 }
 
-/// Relative residual of a row: (|r| - noise)/scale. The row of a prescribed unknown is its deviation.
+KOKKOS_INLINE_FUNCTION Real magnitude(Real value) { return value < 0 ? -value : value; }
+
+/// Relative residual of a row: (|r| - noise)/scale. The row of a prescribed unknown is its deviation. Diagonals may be
+/// negative, as in symmetric saddle-point systems.
 struct RowMeasure {
   ConstView<char*> prescribed;
   ConstView<Real*> r;
@@ -175,12 +178,12 @@ struct RowMeasure {
   }
   KOKKOS_INLINE_FUNCTION Real noise(int i) const {
     if (prescribed(i)) return 0;
-    const Real noise = rounding * present(i) + stored + (others.extent(0) > 0 ? others(i) : 0);
+    const Real noise = rounding * magnitude(present(i)) + stored + (others.extent(0) > 0 ? others(i) : 0);
     const Real limit = max_noise * scale(i);
     return noise > limit ? limit : noise;
   }
   KOKKOS_INLINE_FUNCTION Real value(int i) const {
-    const Real size = r(i) < 0 ? -r(i) : r(i), of_noise = noise(i);
+    const Real size = magnitude(r(i)), of_noise = noise(i);
     return size <= of_noise ? 0 : (size - of_noise) / scale(i);
   }
 };
@@ -240,11 +243,11 @@ struct RowMerit {
   Real rounding;                          ///< round-off of the unknown
 
   KOKKOS_INLINE_FUNCTION Real value(int i) const {
-    const Real noise = rounding * present(i) + (others.extent(0) > 0 ? others(i) : 0);
-    const Real size = (r(i) < 0 ? -r(i) : r(i)) - noise;
+    const Real noise = rounding * magnitude(present(i)) + (others.extent(0) > 0 ? others(i) : 0);
+    const Real size = magnitude(r(i)) - noise;
     if (prescribed(i) || size <= 0) return 0;
     if (weight.extent(0) > 0) return weight(i) * size * size;
-    const Real w = diagonal(i) < 0 ? -diagonal(i) : diagonal(i);
+    const Real w = magnitude(diagonal(i));
     return w > 0 ? 1 / w * size * size : 0;
   }
 };

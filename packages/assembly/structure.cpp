@@ -143,6 +143,10 @@ bool Structure::couples_balances() const {
   return false;
 }
 
+bool Structure::evolves() const {
+  return std::any_of(modules.begin(), modules.end(), [](const auto& module) { return module.declaration.evolves; });
+}
+
 bool Structure::has_rates() const {
   return std::any_of(modules.begin(), modules.end(), [](const auto& module) { return module.declaration.stores; });
 }

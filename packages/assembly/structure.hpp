@@ -24,6 +24,8 @@ struct Structure {
   Context context() const { return {mesh, geometry, layouts, stencils}; }
   /// Returns whether a module stores a quantity.
   bool has_rates() const;
+  /// Returns whether rows of a module contain the step length otherwise.
+  bool evolves() const;
   /// Returns zero vectors, [block].
   fields::BlockVector create_vector() const;
   /// Returns a zero matrix with all declared blocks. Collective.

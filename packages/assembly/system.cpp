@@ -114,6 +114,7 @@ State System::state(const BlockVector& with_ghosts) const {
   State state{.t = rate_history_.t(),
               .rate = rate_history_.rates().now,
               .before = rate_history_.rates().before,
+              .dt = rate_history_.dt(),
               .contact = contact_ ? contact_->regularisation() : contact::Regularisation(),
               .coefficients = flux_lag_.coefficients(),
               .x = {},
@@ -203,7 +204,7 @@ void System::commit(const Evaluation& x) {
     contact_->remember(x.x());
   }
   BlockVector end;
-  if (has_rates()) residual_at(x, there, end = structure_.create_vector());
+  if (structure_.has_rates()) residual_at(x, there, end = structure_.create_vector());
   rate_history_.commit(end, there);
   if (accuracy_) accuracy_->commit(x.x(), rate_history_.dt(), there);
   for (const auto& module : structure_.modules) {
@@ -366,7 +367,8 @@ Real System::bend_of_loads(const Evaluation& x, Real t, Real dt) {
 }
 
 std::vector<OutputField> System::outputs(const BlockVector& x) {
-  const auto there = at(x, Ghosts::Which::all);
+  auto there = at(x, Ghosts::Which::all);
+  there.dt = 0;  // the histories have been updated
   std::vector<OutputField> outputs;
   for (const auto& module : structure_.modules) {
     const auto s = module.at(there);
@@ -382,6 +384,7 @@ std::vector<OutputField> System::outputs(const BlockVector& x) {
 
 std::vector<Total> System::totals(const BlockVector& x) {
   auto there = at(x);
+  there.dt = 0;
   there.unbalanced = rate_history_.unbalanced();
   std::vector<Total> totals;
   base::collectively(*comm(), [&] {
@@ -397,15 +400,15 @@ std::vector<Total> System::totals(const BlockVector& x) {
 
 std::vector<Reaction> System::reactions(const Evaluation& x) {
   auto there = at(x);
-  there.rate = there.before = 0;  // the histories have been updated: no storage
+  there.rate = there.before = there.dt = 0;  // the histories have been updated: no storage
   auto r = structure_.create_vector();
   residual_at(x, there, r);
-  return sums_of_held(r);
+  return sums_of_constrained(r);
 }
 
 std::vector<Reaction> System::reactions_of_step(const BlockVector& x) {
   const auto& end = rate_history_.at_end();
-  return end.empty() ? reactions(x) : sums_of_held(end);
+  return end.empty() ? reactions(x) : sums_of_constrained(end);
 }
 
 void System::module_residual(int module, const BlockVector& x, BlockVector& r) {

@@ -38,7 +38,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   std::shared_ptr<fields::SavedRows> share(int block, const RCP<const fields::Matrix>& J) override {
     return jacobian_.share(block, J);
   }
-  bool stores() const override { return structure_.coupled; }
+  bool stores() const override { return structure_.coupled || structure_.evolves(); }
   bool symmetric() const override { return jacobian_.symmetric() && !structure_.coupled; }
   bool symmetric_blocks() const override { return jacobian_.symmetric(); }
   ConstView<char*> constrained(int block) const override { return structure_.constraints[block].mask(); }
@@ -59,7 +59,9 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// step, returns reactions(x). Collective.
   std::vector<Reaction> reactions_of_step(const fields::BlockVector& x);
   /// Returns the sums of any rows r over the unknowns of each condition. Collective.
-  std::vector<Reaction> sums_of_held(const fields::BlockVector& r) const { return sum_prescribed(structure_, r); }
+  std::vector<Reaction> sums_of_constrained(const fields::BlockVector& r) const {
+    return sum_prescribed(structure_, r);
+  }
   /// Returns the totals of all modules, summed over the ranks. Collective.
   std::vector<Total> totals(const fields::BlockVector& x);
 
@@ -91,8 +93,9 @@ class System : public fields::BlockProblem, private contact::Equations {
 
   /// Enables step error estimates in each commit. Call at the initial state. Collective.
   void watch_errors(Real duration);
-  /// Returns whether a module stores a quantity, so that the step length matters.
-  bool has_rates() const { return structure_.has_rates(); }
+  /// Returns whether a module stores a quantity or evolves with time, so that the step length matters.
+  bool has_rates() const { return structure_.has_rates() || evolves(); }
+  bool evolves() const { return structure_.evolves(); }  ///< see Declaration::evolves
   /// Returns and clears the step errors since the last call or resume(): the largest error of each name.
   fields::StepErrors take_errors() { return accuracy_ ? accuracy_->take() : fields::StepErrors(); }
   /// Returns the deviation of the loads at x from a linear path in the step of length dt to t. The deviation is

@@ -60,10 +60,13 @@ void Section::named_expressions(Expression::Named& target, const std::string& na
         {name, meaning, {{"", type_name(Expression()), "-", "absent", what, any(), false, {}}}, {}});
   } else if (mode_ == Mode::write) {
     for (const auto& [key, value] : target) encode(output_->sublist(name), key, value);
-  } else if (const auto* input = find_list(name)) {
+  } else {
+    Teuchos::ParameterList present;
+    for (const auto& [key, value] : target) encode(present, key, value);
+    const auto* input = mode_ == Mode::check ? &present : find_list(name);
     const auto bounds = any();
     const Expression::Named none;
-    for (const auto& named_entry : *input)
+    for (const auto& named_entry : input ? *input : empty())
       if (const auto& key = named_entry.first; !is_unreadable(named_entry.second))
         decode(named_entry.second, {middle.place(key), "-", bounds, nullptr, none, report_->errors}, target[key]);
     middle.note_defects();
@@ -71,7 +74,7 @@ void Section::named_expressions(Expression::Named& target, const std::string& na
 }
 
 void Section::expressions_call(const Tables& tables, Expression::Named& named) {
-  if (mode_ != Mode::read) return;
+  if (!report_) return;
   const Table nothing{{-1e9, 1e9}, {0, 0}};  // replaces an invalid table, so that its name is known
   auto callable = std::make_shared<Tables>();
   for (const auto& [name, table] : tables) {
@@ -93,15 +96,15 @@ void Section::expressions_call(const Tables& tables, Expression::Named& named) {
 }
 
 void Section::fail(const std::string& what) {
-  if (mode_ == Mode::read) report_->errors.push_back(fmt::format("{}: {}: {}", file_, path_, what));
+  if (report_) report_->errors.push_back(fmt::format("{}: {}: {}", file_, path_, what));
 }
 
 void Section::fail(const std::string& entry, const std::string& what) {
-  if (mode_ == Mode::read) report_->errors.push_back(place(entry) + ": " + what);
+  if (report_) report_->errors.push_back(place(entry) + ": " + what);
 }
 
 void Section::fail_inside(const std::string& what) {
-  if (mode_ == Mode::read) report_->errors.push_back(fmt::format("{}: {} > {}", file_, path_, what));
+  if (report_) report_->errors.push_back(fmt::format("{}: {} > {}", file_, path_, what));
 }
 
 Section Section::child(const std::string& name) const {
@@ -118,8 +121,8 @@ std::string Section::place(const std::string& entry) const {
   return fmt::format("{}: {} > \"{}\"", file_, path_, shortened(entry));
 }
 
-const Teuchos::ParameterEntry* Section::find(const Spec& spec) {
-  const auto* entry = input_->getEntryPtr(spec.name);
+const Teuchos::ParameterEntry* Section::find(const Teuchos::ParameterList& input, const Spec& spec) {
+  const auto* entry = input.getEntryPtr(spec.name);
   const std::string unit = spec.unit == "-" ? "" : fmt::format(" ({})", spec.unit);
   if (!entry && spec.required)
     report_->errors.push_back(fmt::format("{}{}: missing; it is required: {}", place(spec.name), unit, spec.meaning));
@@ -166,13 +169,11 @@ std::vector<std::string> Section::unknown_names() const {
   return names;
 }
 
-bool Section::complete() const {
-  return mode_ == Mode::read && report_->errors.size() == n_errors_before_ && unknown_names().empty();
-}
+bool Section::complete() const { return report_ && is_sound() && unknown_names().empty(); }
 
 void Section::finish(const std::string& meaning) {
   specification_.meaning = meaning;
-  if (mode_ != Mode::read) return;
+  if (!report_) return;
   for (const auto& name : unknown_names()) {
     if (is_unreadable(*input_->getEntryPtr(name)) && name[0] == '<') continue;  // an element without a name
     const auto hint = hints_.find(without_separators(name));
@@ -185,11 +186,19 @@ void Section::finish(const std::string& meaning) {
 }
 
 void Section::note_defects() {
-  if (report_->errors.size() > n_errors_before_) report_->defective.insert(path_);
+  if (!is_sound()) report_->defective.insert(path_);
+}
+
+const Teuchos::ParameterList& Section::empty() {
+  static const Teuchos::ParameterList list;
+  return list;
 }
 
 void throw_errors(const std::vector<std::string>& errors) {
-  SPREKK_CHECK(errors.empty(), "{}", fmt::join(errors, "\n"));
+  constexpr std::size_t maximum = 20;  // in a message
+  const std::size_t n = errors.size() <= maximum + 1 ? errors.size() : maximum;
+  SPREKK_CHECK(errors.empty(), "{}{}", fmt::join(errors.begin(), errors.begin() + n, "\n"),
+               n < errors.size() ? fmt::format("\nand {} more errors", errors.size() - n) : "");
 }
 
 }  // namespace sprekk::base

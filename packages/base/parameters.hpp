@@ -1,5 +1,5 @@
 // Parameters. Each one is declared once, in the describe() of the struct that contains it. describe() reads the struct
-// from a parameter list, writes it to a list, and documents it.
+// from a parameter list, checks a struct in place, writes it to a list, and documents it.
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
@@ -27,7 +27,7 @@ struct Report {
   bool is_sound(const std::string& section) const { return !defective.count(section); }
 };
 
-/// Struct S read from the input; unreadable parts retain their default values.
+/// Struct S with its errors. Unreadable parts of the input retain their default values, wrong members their values.
 template <class S>
 struct Draft {
   S value{};
@@ -101,7 +101,7 @@ class Section {
   /// stiffness"?` for "kn". Names are compared by without_separators().
   void hint(const std::vector<std::string>& names, const std::string& what);
 
-  /// Reports an error that involves several entries, e.g. a contradiction. Ignored except while reading.
+  /// Reports an error that involves several entries, e.g. a contradiction. Ignored except while reading or checking.
   void fail(const std::string& what);
   void fail(const std::string& entry, const std::string& what);
   /// Reports an error inside a subsection. `what` begins with its path, e.g. `Bulk > "material": is ...`.
@@ -113,25 +113,27 @@ class Section {
   void expressions_call(const Tables& tables, Expression::Named& named);
 
   /// True if no error has been found so far in this section.
-  bool is_sound() const { return mode_ != Mode::read || report_->errors.size() == n_errors_before_; }
+  bool is_sound() const { return !report_ || report_->errors.size() == n_errors_before_; }
 
-  /// True while the available parameters are documented, not read or written.
+  /// True while the available parameters are documented, not read, checked or written.
   bool documents() const { return mode_ == Mode::document; }
 
-  /// True if this section was read without errors and all its names have been described. describe() may then compare
-  /// entries after the last declaration. So a misspelt entry is not reported a second time as missing.
+  /// True if this section was read or checked without errors and all its names have been described. describe() may then
+  /// compare entries after the last declaration. So a misspelt entry is not reported a second time as missing.
   bool complete() const;
 
   template <class S>
   static Draft<S> draft(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
                         std::vector<std::string> errors);
   template <class S>
+  static Draft<S> checked(S value, const std::string& file, const std::string& root);
+  template <class S>
   static Teuchos::ParameterList effective(S& target, const std::string& root);
   template <class S>
   static SectionSpecification specification(const std::string& root);
 
  private:
-  enum class Mode { read, write, document };
+  enum class Mode { read, check, write, document };
   struct Spec {
     std::string name, unit;
     Bounds bounds;
@@ -144,14 +146,20 @@ class Section {
 
   template <class T>
   void visit(T& target, const Spec& spec);
+  /// Decodes an entry of `input` if it is present and admissible.
+  template <class T>
+  void decode_from(const Teuchos::ParameterList& input, const Spec& spec, T& target);
+  template <class S>
+  Draft<S> described(S value, Report report);  ///< describes `value` with this section as its root
   /// Describes a struct by a subsection, with `input` or `output`.
   template <class S>
   void descend(S& target, const std::string& name, const Teuchos::ParameterList* input, Teuchos::ParameterList* output,
                const std::string& meaning);
 
   Section child(const std::string& name) const;
-  std::string place(const std::string& entry) const;                 ///< `file: path > "entry"`
-  const Teuchos::ParameterEntry* find(const Spec& spec);             ///< reports a missing required entry
+  std::string place(const std::string& entry) const;  ///< `file: path > "entry"`
+  /// Returns an entry of `input`, null if absent. Reports a missing required entry.
+  const Teuchos::ParameterEntry* find(const Teuchos::ParameterList& input, const Spec& spec);
   const Teuchos::ParameterList* find_list(const std::string& name);  ///< null if absent; reports an entry in its place
   bool is_a_choice(const Spec& spec, const Teuchos::ParameterEntry& entry);  ///< reports a word that is not a choice
   void refuse_units(const Teuchos::ParameterList& list, const std::string& path);  ///< reports units in a copied list
@@ -161,15 +169,16 @@ class Section {
   std::vector<std::string> unknown_names() const;
   void finish(const std::string& meaning);  ///< reports unknown names; completes the specification
   void note_defects();                      ///< marks this section if errors were reported since its beginning
+  static const Teuchos::ParameterList& empty();
 
   Mode mode_;
   std::string path_;                          ///< `Sprekk > Materials > joint`
   std::vector<std::string> names_;            ///< names of all entries and sections described so far
   std::map<std::string, std::string> hints_;  ///< hints by unknown name without separators
-  // reading
+  // reading and checking
   std::string file_;
-  const Teuchos::ParameterList* input_ = nullptr;
-  Report* report_ = nullptr;
+  const Teuchos::ParameterList* input_ = &empty();  ///< empty while checking
+  Report* report_ = nullptr;                        ///< null while writing and documenting
   std::size_t n_errors_before_ = 0;
   std::shared_ptr<const Tables> tables_;
   Expression::Named named_;
@@ -185,6 +194,13 @@ template <class S>
 Draft<S> draft(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
                std::vector<std::string> errors = {}) {
   return Section::draft<S>(list, file, root, std::move(errors));
+}
+
+/// Checks the members of `value` like entries of an input, and completes it as describe() does. Members that are no
+/// entries are unchanged. `file` and `root` as in draft().
+template <class S>
+Draft<S> checked(S value, const std::string& file, const std::string& root) {
+  return Section::checked(std::move(value), file, root);
 }
 
 /// Throws one Error with all lines if there are any.
@@ -215,17 +231,18 @@ SectionSpecification specification(const std::string& root) {
 template <class T>
 void Section::visit(T& target, const Spec& spec) {
   names_.push_back(spec.name);
-  if (mode_ == Mode::read) {
-    const auto* entry = find(spec);
-    if (entry && is_a_choice(spec, *entry))
-      decode(*entry, {place(spec.name), spec.unit, spec.bounds, tables_, named_, report_->errors}, target);
-  } else if (mode_ == Mode::write) {
-    encode(*output_, spec.name, target);
-  } else {
-    Teuchos::ParameterList defaults;
-    if (!spec.required) encode(defaults, spec.name, target);
-    document(spec, type_name(target), defaults);
-  }
+  if (mode_ == Mode::read) return decode_from(*input_, spec, target);
+  if (mode_ == Mode::write) return encode(*output_, spec.name, target);
+  Teuchos::ParameterList present;
+  if (mode_ == Mode::check || !spec.required) encode(present, spec.name, target);
+  mode_ == Mode::check ? decode_from(present, spec, target) : document(spec, type_name(target), present);
+}
+
+template <class T>
+void Section::decode_from(const Teuchos::ParameterList& input, const Spec& spec, T& target) {
+  const auto* entry = find(input, spec);
+  if (entry && is_a_choice(spec, *entry))
+    decode(*entry, {place(spec.name), spec.unit, spec.bounds, tables_, named_, report_->errors}, target);
 }
 
 template <class S>
@@ -243,11 +260,10 @@ void Section::descend(S& target, const std::string& name, const Teuchos::Paramet
 template <class S>
 void Section::section(S& target, const std::string& name, const std::string& meaning) {
   names_.push_back(name);
-  const Teuchos::ParameterList nothing;
   const auto* input = mode_ == Mode::read ? find_list(name) : nullptr;
-  if (mode_ == Mode::read && !input && input_->isParameter(name)) return;  // not a section: already reported
+  if (!input && input_->isParameter(name)) return;  // not a section: already reported
   auto* output = mode_ == Mode::write ? &output_->sublist(name) : nullptr;
-  descend(target, name, input ? input : &nothing, output, meaning);
+  descend(target, name, input ? input : &empty(), output, meaning);
 }
 
 template <class S>
@@ -256,7 +272,7 @@ void Section::section(std::optional<S>& target, const std::string& name, const s
     S present{};
     section(present, name, meaning + " (may be absent)");
     if (mode_ == Mode::read) target = std::move(present);
-  } else if (mode_ == Mode::write && target) {
+  } else if (mode_ != Mode::read && target) {
     section(*target, name, meaning);
   } else {
     names_.push_back(name);
@@ -277,13 +293,15 @@ void Section::named_sections(std::map<std::string, S>& target, const std::string
   if (mode_ == Mode::document) {
     middle.specification_.name = name;
     common(middle, first);
-    middle.descend(first, "", nullptr, nullptr, meaning);
+    middle.descend(first, "", &empty(), nullptr, meaning);
     specification_.sections.push_back(std::move(middle.specification_));
-  } else if (mode_ == Mode::write) {
-    auto& output = output_->sublist(name);
-    middle.output_ = &output;
+  } else if (mode_ != Mode::read) {
+    auto* output = mode_ == Mode::write ? &output_->sublist(name) : nullptr;
+    middle.output_ = output;
     common(middle, first);
-    for (auto& [key, value] : target) middle.descend(value, key, nullptr, &output.sublist(key), meaning);
+    for (auto& [key, value] : target)
+      middle.descend(value, key, &empty(), output ? &output->sublist(key) : nullptr, meaning);
+    middle.note_defects();
   } else if (const auto* input = find_list(name)) {
     middle.input_ = input;
     common(middle, first);
@@ -299,18 +317,29 @@ void Section::named_sections(std::map<std::string, S>& target, const std::string
 }
 
 template <class S>
+Draft<S> Section::described(S value, Report report) {
+  Draft<S> result{std::move(value), std::move(report)};
+  report_ = &result.report;
+  n_errors_before_ = report_->errors.size();
+  result.value.describe(*this);
+  finish("");
+  return result;
+}
+
+template <class S>
 Draft<S> Section::draft(const Teuchos::ParameterList& list, const std::string& file, const std::string& root,
                         std::vector<std::string> errors) {
-  Draft<S> result;
-  result.report.errors = std::move(errors);
   Section section(Mode::read, root);
   section.file_ = file;
   section.input_ = &list;
-  section.report_ = &result.report;
-  section.n_errors_before_ = result.report.errors.size();
-  result.value.describe(section);
-  section.finish("");
-  return result;
+  return section.described(S{}, {std::move(errors), {}, {}});
+}
+
+template <class S>
+Draft<S> Section::checked(S value, const std::string& file, const std::string& root) {
+  Section section(Mode::check, root);
+  section.file_ = file;
+  return section.described(std::move(value), {});
 }
 
 template <class S>

@@ -113,11 +113,12 @@ std::string number_text(Real value) {
 }
 
 std::string quoted_list(const std::vector<std::string>& names) {
-  constexpr std::size_t maximum = 40;  // in a message; the most similar name is given separately
+  constexpr std::size_t maximum = 40, longest = 1500;  // in a message; the most similar name is given separately
   std::string text;
-  for (std::size_t k = 0; k < std::min(maximum, names.size()); ++k)
+  std::size_t k = 0;
+  for (; k < std::min(maximum, names.size()) && text.size() < longest; ++k)
     text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shortened(names[k]));
-  return names.size() <= maximum ? text : fmt::format("{} and {} more", text, names.size() - maximum);
+  return k == names.size() ? text : fmt::format("{} and {} more", text, names.size() - k);
 }
 
 std::string shortened(const std::string& text) {

@@ -11,8 +11,8 @@ using fields::BlockVector;
 using fields::Evaluation;
 
 RCP<const fields::Vector> Contact::proximal(int block) const {
-  return block == blocks_.motion && pieces_ && pieces_->any() ? Teuchos::rcpFromRef(pieces_->proximal())
-                                                              : Teuchos::null;
+  return block == blocks_.motion && pieces_ && pieces_->any_weakly_held() ? Teuchos::rcpFromRef(pieces_->proximal())
+                                                                          : Teuchos::null;
 }
 
 std::string Contact::floating() const {
@@ -24,7 +24,7 @@ std::string Contact::floating() const {
 void Contact::find_floating(std::vector<Constraint> constraints) {
   if (!pieces_) return;
   if (regularisation_.proximal > 0)
-    for (auto& constraint : constraints) constraint.held = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (auto& constraint : constraints) constraint.constrained = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   pieces_->find(constraints);
   driven_ = {};
 }

@@ -20,7 +20,7 @@ constexpr Real noticeable = 1e-4;  ///< smallest change of jumps and tractions, 
 constexpr int n_classes = 25;      ///< number of stiffness classes, decades
 enum Sum { worked, of_constant, moved, loaded, noticed, area, n_sums };
 
-bool is_open(const Constraint& constraint) { return constraint.held == std::array<mesh::Vector, 3>{}; }
+bool is_open(const Constraint& constraint) { return constraint.constrained == std::array<mesh::Vector, 3>{}; }
 
 }  // namespace
 

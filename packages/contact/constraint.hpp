@@ -13,16 +13,17 @@ inline constexpr const char* state_names[] = {"open", "stick", "slip"};
 
 /// Contact constraint of a fracture face at a state.
 struct Constraint {
-  std::array<mesh::Vector, 3> held{};  ///< rows: constrained directions of the jump, global frame; zero: open
-  mesh::Vector excess{};               ///< traction unknown minus the traction of the law, Pa, global frame
-  mesh::Vector traction{}, jump{};     ///< Pa, m, global frame
-  Real augmentation = 0;               ///< augmentation constant c of the face law, Pa/m
-  Real modulus = 0;                    ///< Young's modulus of the softer side, Pa
-  Real gap = 0;                        ///< distance of the sides from contact without traction, m
-  mesh::Vector away{};                 ///< derivative of the gap with respect to the jump
-  bool weakens = false;                ///< the law has history variables; slip may reduce the friction bound
-  Real limit = 0;                      ///< friction bound: largest tangential traction, Pa
-  mesh::Vector slip{};                 ///< plastic tangential jump since the last accepted state, m, global frame
+  std::array<mesh::Vector, 3> constrained{};  ///< rows: constrained directions of the jump, global frame; zero: open
+  mesh::Vector resisted{};                    ///< direction of the jump that also other terms resist, global frame
+  mesh::Vector excess{};                      ///< traction unknown minus the traction of the law, Pa, global frame
+  mesh::Vector traction{}, jump{};            ///< Pa, m, global frame
+  Real augmentation = 0;                      ///< augmentation constant c of the face law, Pa/m
+  Real modulus = 0;                           ///< Young's modulus of the softer side, Pa
+  Real gap = 0;                               ///< distance of the sides from contact without traction, m
+  mesh::Vector away{};                        ///< derivative of the gap with respect to the jump
+  bool weakens = false;                       ///< the law has history variables; slip may reduce the friction bound
+  Real limit = 0;                             ///< friction bound: largest tangential traction, Pa
+  mesh::Vector slip{};  ///< plastic tangential jump since the last accepted state, m, global frame
 };
 
 /// Supported displacement unknown.

@@ -57,13 +57,13 @@ bool Contact::set_proximal_term(Real stiffness, const fields::Evaluation& x) {
   regularisation_.proximal = 0;
   equations_.restart_row_sizes();
   if (stiffness == 0 || blocks_.multiplier < 0) return blocks_.multiplier >= 0;
-  const auto held = equations_.contact_constraints(x);
+  const auto constrained = equations_.contact_constraints(x);
   const int dim = mesh_->dim();
-  const base::HostTable<Real**> anchor("anchor", held.size(), 2 * dim);
-  for (std::size_t f = 0; f < held.size(); ++f)
+  const base::HostTable<Real**> anchor("anchor", constrained.size(), 2 * dim);
+  for (std::size_t f = 0; f < constrained.size(); ++f)
     for (int i = 0; i < dim; ++i) {
-      anchor(f, i) = held[f].jump[i];
-      anchor(f, dim + i) = held[f].traction[i];
+      anchor(f, i) = constrained[f].jump[i];
+      anchor(f, dim + i) = constrained[f].traction[i];
     }
   regularisation_.anchor = anchor.on_device();
   regularisation_.proximal = stiffness;

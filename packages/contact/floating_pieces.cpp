@@ -21,6 +21,8 @@ namespace {
 
 /// Proximal term relative to the stiffness against deformation: without effect on results, large enough for round-off.
 constexpr Real proximal_share = 1e-4;
+/// Share of this term in pieces with a resistance that may be many orders of magnitude below that of the rock.
+constexpr Real weak = 1e-8;
 
 void add_block(RigidBlock& sum, const RigidBlock& block) {
   for (int k = 0; k < 6; ++k)
@@ -189,7 +191,7 @@ void FloatingPieces::set_stiffness(const fields::Vector& diagonal) {
     for (int i = 0; i < dim(); ++i) view(k * dim() + i, 0) *= *softest / modulus[piece_of_[k]];
 }
 
-void FloatingPieces::sum_pairs(const std::vector<Constraint>& constraints) {
+void FloatingPieces::sum_pairs(const std::vector<Constraint>& constraints, bool with_resistance) {
   pairs_sum_.assign(3 * pairs_.size(), {});
   const auto add = [&](int pair, const RigidRow& a, const RigidRow& b) {
     add_product(pairs_sum_[3 * pair], a, a);
@@ -203,17 +205,19 @@ void FloatingPieces::sum_pairs(const std::vector<Constraint>& constraints) {
     if (pair_of_[f] < 0) continue;
     const auto [a, b] = pairs_[pair_of_[f]];
     const Vector& x = mesh_->fracture_faces[f].centre;
-    for (int i = 0; i < dim(); ++i) {
-      RigidRow row_a{}, row_b{};  // constraint row of component i
+    const auto constrain = [&, a = a, b = b](const Vector& direction) {
+      RigidRow row_a{}, row_b{};
       for (int j = 0; j < dim(); ++j) {
         const auto at_a = rigid_row(frames_[a], x, j), at_b = rigid_row(frames_[b], x, j);
         for (int k = 0; k < 6; ++k) {
-          row_a[k] += constraints[f].held[i][j] * at_a[k];
-          row_b[k] += constraints[f].held[i][j] * at_b[k];
+          row_a[k] += direction[j] * at_a[k];
+          row_b[k] += direction[j] * at_b[k];
         }
       }
       add(pair_of_[f], row_a, row_b);
-    }
+    };
+    for (int i = 0; i < dim(); ++i) constrain(constraints[f].constrained[i]);
+    if (with_resistance) constrain(constraints[f].resisted);
   }
   pairs_sum_ = base::sum_over_ranks(*mesh_->comm, pairs_sum_);
 }
@@ -222,44 +226,56 @@ void FloatingPieces::sum_pairs(const std::vector<Constraint>& constraints) {
 /// neighbours leave no free motion.
 std::vector<int> FloatingPieces::unconstrained() const {
   const auto modes = rigid_modes(dim());
-  std::vector<char> held(mesh_->n_pieces, 1);
-  for (int p : candidates_) held[p] = 0;
+  std::vector<char> constrained(mesh_->n_pieces, 1);
+  for (int p : candidates_) constrained[p] = 0;
   auto sum = support_;
   for (int p : candidates_)
     for (const auto& n : neighbours_[p])
-      if (held[n.piece]) add_block(sum[p], block(n.pair, n.first ? 0 : 2));
+      if (constrained[n.piece]) add_block(sum[p], block(n.pair, n.first ? 0 : 2));
   std::vector<int> open = candidates_;
   while (!open.empty()) {
     const int p = open.back();
     open.pop_back();
-    if (held[p] || !is_regular(sum[p], modes)) continue;
-    held[p] = 1;
+    if (constrained[p] || !is_regular(sum[p], modes)) continue;
+    constrained[p] = 1;
     for (const auto& n : neighbours_[p])
-      if (!held[n.piece]) {
+      if (!constrained[n.piece]) {
         add_block(sum[n.piece], block(n.pair, n.first ? 2 : 0));
         open.push_back(n.piece);
       }
   }
   std::vector<int> result;
   for (int p : candidates_)
-    if (!held[p]) result.push_back(p);
+    if (!constrained[p]) result.push_back(p);
   return result;
 }
 
 void FloatingPieces::find(const std::vector<Constraint>& constraints) {
-  sum_pairs(constraints);
+  const bool resisted = base::on_any_rank(
+      *mesh_->comm, std::any_of(constraints.begin(), constraints.end(),
+                                [](const Constraint& constraint) { return constraint.resisted != Vector{}; }));
+  find_pieces(constraints, false);
+  const auto without_resistance = floating_number_;
+  weakly_held_ = resisted && any();
+  if (weakly_held_) find_pieces(constraints, true);
+  proximal_->putScalar(0);
+  if (!any_weakly_held()) return;
+  const auto to = proximal_->getLocalViewHost(Tpetra::Access::ReadWrite);
+  const auto from = stiffness_->getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t k = 0; k < piece_of_.size(); ++k) {
+    const int piece = piece_of_[k];
+    const Real share = floating_number_[piece] >= 0 ? 1 : without_resistance[piece] >= 0 ? weak : 0;
+    for (int i = 0; i < dim(); ++i) to(k * dim() + i, 0) = share * from(k * dim() + i, 0);
+  }
+}
+
+void FloatingPieces::find_pieces(const std::vector<Constraint>& constraints, bool with_resistance) {
+  sum_pairs(constraints, with_resistance);
   floating_.clear();
   groups_.clear();
   std::fill(floating_number_.begin(), floating_number_.end(), -1);
   for (const auto& pieces : coupled(unconstrained())) find_motions(pieces);
   for (std::size_t k = 0; k < floating_.size(); ++k) floating_number_[floating_[k]] = static_cast<int>(k);
-  proximal_->putScalar(0);
-  if (!any()) return;
-  const auto to = proximal_->getLocalViewHost(Tpetra::Access::ReadWrite);
-  const auto from = stiffness_->getLocalViewHost(Tpetra::Access::ReadOnly);
-  for (std::size_t k = 0; k < piece_of_.size(); ++k)
-    if (floating_number_[piece_of_[k]] >= 0)
-      for (int i = 0; i < dim(); ++i) to(k * dim() + i, 0) = from(k * dim() + i, 0);
 }
 
 /// Returns the sets of pieces that constrain each other in some direction.

@@ -15,8 +15,8 @@ namespace sprekk::contact {
 
 /// Floating pieces and their free motions. If all faces of a piece are open or slide in one direction, the piece can
 /// move as a rigid body. Nothing resists this motion, and the Jacobian is singular. The free motions follow from the
-/// contact constraints between pairs of pieces, summed over their faces; a face acts at its centre. All members are
-/// collective unless they return stored data.
+/// contact constraints between pairs of pieces, summed over their faces; a face acts at its centre. A motion that other
+/// terms resist (Constraint::resisted) is not free. All members are collective unless they return stored data.
 class FloatingPieces {
  public:
   /// displacement: layout of the field of `supports`. volumes: [local cell], m^3 (m^2 in 2D).
@@ -40,8 +40,12 @@ class FloatingPieces {
   /// Returns whether find() found a free motion. Stored data.
   bool any() const { return !floating_.empty(); }
 
+  /// Returns whether find() found a free motion, or one that only Constraint::resisted prevents. Stored data.
+  bool any_weakly_held() const { return any() || weakly_held_; }
+
   /// Returns the diagonal that makes the Jacobian regular, [owned unknown]: 1e-4 of the stiffness of the softest piece
-  /// against deformation, in proportion to the volume. It is zero except in floating pieces. Stored data.
+  /// against deformation, in proportion to the volume. It is 1e-12 of this stiffness in pieces whose motion only
+  /// Constraint::resisted prevents, and zero in others. Stored data.
   const fields::Vector& proximal() const { return *proximal_; }
   /// Sets the diagonal of the rock, [owned unknown]. Call before the first find().
   void set_stiffness(const fields::Vector& diagonal);
@@ -135,7 +139,8 @@ class FloatingPieces {
   void find_ties(const fields::Layout& displacement);
   void pair_up();
   void constrain(const std::vector<Support>& supports);
-  void sum_pairs(const std::vector<Constraint>& constraints);
+  void find_pieces(const std::vector<Constraint>& constraints, bool with_resistance);
+  void sum_pairs(const std::vector<Constraint>& constraints, bool with_resistance);
   std::vector<int> unconstrained() const;
   std::vector<std::vector<int>> coupled(const std::vector<int>& pieces) const;
   std::vector<Real> resistance(const std::vector<int>& pieces) const;
@@ -166,6 +171,7 @@ class FloatingPieces {
   std::vector<int> floating_number_;                // [piece] index in floating_, or -1
   std::vector<Group> groups_;                       // in the order of their first pieces
   RCP<fields::Vector> stiffness_, proximal_;
+  bool weakly_held_ = false;
   Real contrast_ = 1;
 };
 

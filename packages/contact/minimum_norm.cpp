@@ -33,16 +33,16 @@ void release(const mesh::Mesh& mesh, Real minimum, std::vector<Constraint>& cons
              std::vector<FloatingPieces::Slide>& slides) {
   for (std::size_t f = 0; f < constraints.size(); ++f) {
     auto& constraint = constraints[f];
-    constraint.held = {};
+    constraint.constrained = {};
     if (!(mesh::norm(constraint.traction) > minimum)) continue;
     const auto& frame = mesh.fracture_faces[f].frame;
     const Vector shear = constraint.traction - mesh::dot(constraint.traction, frame[0]) * frame[0];
     const Real size = mesh::norm(shear);
     if (size < (1 - at_limit) * constraint.limit - minimum) {
-      constraint.held = identity();
+      constraint.constrained = identity();
       continue;
     }
-    constraint.held = product(frame[0], constraint.away);
+    constraint.constrained = product(frame[0], constraint.away);
     const auto add = [&](const Vector& along, bool one_way) {
       slides.push_back({static_cast<LocalIndex>(f), along, mesh::dot(along, constraint.slip), one_way});
     };
@@ -53,8 +53,9 @@ void release(const mesh::Mesh& mesh, Real minimum, std::vector<Constraint>& cons
     const Vector along = (1 / size) * shear;
     add(along, true);
     const Vector across = mesh::cross(frame[0], along);
-    const auto held = product(across, across);
-    for (int i = 0; i < 3 && mesh.dim() == 3; ++i) constraint.held[i] = constraint.held[i] + held[i];
+    const auto constrained = product(across, across);
+    for (int i = 0; i < 3 && mesh.dim() == 3; ++i)
+      constraint.constrained[i] = constraint.constrained[i] + constrained[i];
   }
 }
 

@@ -57,7 +57,7 @@ void ErrorEstimator::add_time_history(const State& state, fields::BlockVector& r
 void ErrorEstimator::correct(const State& state, ErrorEstimate& estimate) {
   auto right_side = fields::create_like(state.x), x = fields::create_like(state.x);
   for (const auto& error : errors_) error->add_residual(state.x, right_side);
-  const auto residual = system_.sums_of_held(right_side), reactions = system_.reactions(state.x);
+  const auto residual = system_.sums_of_constrained(right_side), reactions = system_.reactions(state.x);
   add_time_history(state, right_side);
   zero_constrained_rows(system_, right_side);
   try {

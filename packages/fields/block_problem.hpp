@@ -91,8 +91,8 @@ class BlockProblem {
   /// block before J is changed. If the block is already shared, its saved values are restored in J. Returns null if the
   /// block is not constant; it then remains in matrix().
   virtual std::shared_ptr<SavedRows> share(int block, const RCP<const Matrix>& J) { return nullptr; }
-  /// True if f contains storage terms over the time step. Shorter steps are then easier to solve. Otherwise only the
-  /// loads depend on the step.
+  /// True if f depends on the length of the time step, by storage or by other rates. Shorter steps are then easier to
+  /// solve. Otherwise only the loads depend on the step.
   virtual bool stores() const { return false; }
   /// True if the present matrix() is symmetric after elimination of the local groups.
   virtual bool symmetric() const = 0;

@@ -3,7 +3,9 @@
 
 #include "base/check.hpp"
 #include "laboratory/point.hpp"
+#include "laws/joint_quantities.hpp"
 #include "laws/joint_slopes.hpp"
+#include "laws/joint_start.hpp"
 
 #include <Sacado.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -32,16 +34,27 @@ struct JointPoint {
   const PointPath& path;
   laws::Joint law;
   laws::Augmentation constants;
-  std::vector<Real> history = std::vector<Real>(law.n_history(), 0);  // history variables of the law
+  std::vector<Real> history = std::vector<Real>(law.n_history(dim), 0);  // history variables of the law
   Real stiffness[dim], prescribed[dim] = {}, unknowns[2 * dim] = {}, last_plastic[dim - 1] = {};
   Real start_traction[dim] = {}, rest[dim] = {};  // initial traction and its jump
+  Real unloaded_aperture;                         // a0 of (15), m
+  Real time = 0, duration = 0;                    // end of the last step, length of the step to be solved, s
+  std::vector<std::string> names;                 // of the reported quantities: those of laws with a slip rate
+  std::vector<laws::QuantityOfFace> reported;     // their values
   mutable long evaluations = 0;
 
-  JointPoint(const PointPath& along, const laws::Joint& joint) : path(along), law(joint) {
+  JointPoint(const PointPath& along, const laws::JointParameters& joint)
+      : path(along), law(joint.law), unloaded_aperture(joint.initial_aperture) {
     for (std::size_t i = 0; i < path.plastic_jump.size(); ++i) last_plastic[i] = path.plastic_jump[i];
     for (int i = 0; i < dim; ++i) stiffness[i] = i == 0 ? path.normal_stiffness : path.tangential_stiffness;
     law.sliding_compliance = 0;  // only used to steer the iteration on meshes
-    if (!path.initial_traction.empty()) press();
+    if (law.depends_on_rate())
+      for (const auto& quantity : laws::joint_quantities())
+        if (auto value = laws::quantity_of(law, quantity.name)) {
+          names.push_back(quantity.name);
+          reported.push_back(std::move(value));
+        }
+    if (!path.initial_traction.empty()) press(joint);
   }
 
   /// Returns true if the tension prescribed at t exceeds the present strength: there is no state, the joint separates.
@@ -63,7 +76,9 @@ struct JointPoint {
     std::copy_n(at.plastic_jump, dim - 1, now);
     at.slip_of_step = distance(now, last_plastic);
     at.plastic_slip = laws::norm(now);
+    at.duration = t - time;
     law.commit(at, {history.data()});
+    time = t;
     std::copy_n(now, dim - 1, last_plastic);
     std::fill_n(unknowns, 2 * dim, 0);
     std::copy_n(now, dim - 1, unknowns + 1);
@@ -71,13 +86,14 @@ struct JointPoint {
 
   /// Data changed by a step.
   struct Memory {
-    Real x[2 * dim], plastic[dim - 1];
+    Real x[2 * dim], plastic[dim - 1], time;
     std::vector<Real> saved;
   };
   Memory memory() const {
     Memory memory;
     std::copy_n(unknowns, 2 * dim, memory.x);
     std::copy_n(last_plastic, dim - 1, memory.plastic);
+    memory.time = time;
     memory.saved = history;
     return memory;
   }
@@ -85,6 +101,7 @@ struct JointPoint {
     std::copy_n(memory.x, 2 * dim, unknowns);
     std::copy_n(memory.plastic, dim - 1, last_plastic);
     std::copy(memory.saved.begin(), memory.saved.end(), history.begin());
+    time = memory.time;
   }
 
   static Real distance(const Real (&a)[dim - 1], const Real (&b)[dim - 1]) {
@@ -93,20 +110,15 @@ struct JointPoint {
     return laws::norm(difference);
   }
 
-  /// Sets the initial traction and the corresponding jump. Throws an Error for tension, or for shear above the bound.
-  void press() {
-    auto at = laws::contact<dim>(path.initial_traction[0], laws::norm(last_plastic), last_plastic, last_plastic,
-                                 {history.data()});
-    SPREKK_CHECK(at.lambda_n <= 0, "the initial traction is {} along the normal; it must be compressive or 0",
-                 at.lambda_n);
-    std::copy_n(path.initial_traction.begin(), dim, start_traction);
-    Real shear[dim - 1];
-    std::copy_n(start_traction + 1, dim - 1, shear);
-    at.shear = laws::norm(shear);
-    SPREKK_CHECK(at.shear <= law.bound(at), "the initial shear traction is {}; the strength of the joint is {}",
-                 at.shear, law.bound(at));
-    rest[0] = law.normal_gap(at);
-    for (int i = 1; i < dim; ++i) rest[i] = last_plastic[i - 1] + law.compliance(at) * start_traction[i];
+  /// Sets the initial traction, the corresponding jump and the history variables. Throws an Error for tension above the
+  /// strength, or for shear above the bound.
+  void press(const laws::JointParameters& joint) {
+    const auto traction = path.start_traction();
+    const auto start = laws::start_of(joint, traction, dim);
+    laws::check_start(joint, start, traction);
+    std::copy_n(traction.begin(), dim, start_traction);
+    std::copy_n(start.jump.begin(), dim, rest);
+    std::copy_n(start.history.begin(), history.size(), history.begin());
     std::copy_n(rest, dim, unknowns);
     std::copy_n(start_traction, dim, unknowns + dim);
   }
@@ -255,7 +267,8 @@ struct JointPoint {
       w[i] = Fad(2 * dim, i, unknowns[i]);
       lambda[i] = Fad(2 * dim, dim + i, unknowns[dim + i]);
     }
-    const auto state = laws::contact_residual<dim>(law, constants, w, lambda, last_plastic, R, {history.data()});
+    const auto state =
+        laws::contact_residual<dim>(law, constants, w, lambda, last_plastic, R, {history.data()}, duration);
     for (int i = 0; i < dim; ++i) {
       if (state == laws::ContactState::stick && rests(i)) R[i] = lambda[i] - unknowns[dim + i];
       const Fad moved = w[i] - rest[i];
@@ -285,12 +298,16 @@ struct JointPoint {
     }
     Real now[dim - 1];
     std::copy_n(plastic + 1, dim - 1, now);
-    const auto at = laws::converged<dim>(law, contact, w, lambda, now, last_plastic, {history.data()});
+    const auto at = laws::converged<dim>(law, contact, w, lambda, now, last_plastic, {history.data()}, duration,
+                                         constants.tangential);
+    const auto defect = law.defect_of_step(at);
     const bool jumps = contact == laws::ContactState::slip && runs_away(at);
     law.commit(at, {history.data()});
     std::copy_n(now, dim - 1, last_plastic);
+    time = t;
     auto accepted = state(t, contact);
     accepted.slip_jumps = jumps;
+    accepted.defect = defect;
     return accepted;
   }
 
@@ -307,7 +324,16 @@ struct JointPoint {
             {elastic, elastic + dim},
             {plastic, plastic + dim},
             {lambda, lambda + dim},
-            strength(lambda[0])};
+            strength(lambda[0]),
+            unloaded_aperture + w[0],
+            quantities()};
+  }
+
+  /// Values of the reported quantities after the last step.
+  std::vector<Real> quantities() const {
+    std::vector<Real> values;
+    for (const auto& value : reported) values.push_back(value(at_rest()));
+    return values;
   }
 
   /// Bound of |lambda_t| at a normal traction after the slip so far, Pa.
@@ -328,8 +354,9 @@ struct JointPoint {
   }
 
   /// Returns true if friction decreases faster than column and joint unload, anywhere along the slip of the step. Then
-  /// no continuous path of states connects its begin and end.
+  /// no continuous path of states connects its begin and end. Friction that depends on the slip rate has such a path.
   bool runs_away(const laws::Contact<Real>& end) const {
+    if (law.depends_on_rate()) return false;
     const Real compliance = law.compliance(end) + (control(1) == "column" ? 1 / stiffness[1] : 0);
     for (int k = 0; k <= samples; ++k) {
       auto at = end;

@@ -13,6 +13,38 @@ namespace sprekk::laboratory {
 
 namespace {
 
+fields::StepErrors step_errors(const laws::StepDefect& defect) {
+  const Real order = defect.rate < 0 ? fields::StepError::unknown : 2;
+  return {{"slip rate", std::max(defect.rate, Real(0)), order},
+          {"friction state", std::max(defect.state, Real(0)), order},
+          {"growth of instabilities", defect.growth, 2}};
+}
+
+/// Appends the states of adaptive steps from the initial state of the driver. A step without state is repeated with a
+/// smaller length. Throws an Error if the smallest step has no state.
+template <int dim>
+void choose_steps(PointDriver<dim>& driver, const solve::Time& time, std::vector<PointState>& states) {
+  const auto options = time.control(true, true);
+  const auto times = time.times();
+  solve::StepControl control(options, times);
+  for (Real t = time.start; t < times.back();) {
+    const Real end = control.end_of_step(t), dt = end - t;
+    const auto begin = driver.memory();
+    try {
+      const auto state = driver.advance(t, end).back();
+      if (control.judge(dt, step_errors(state.defect), 0) != solve::StepControl::Verdict::rejected) {
+        states.push_back(state);
+        t = end;
+        continue;
+      }
+    } catch (const Error& error) {
+      if (options.smallest > 0.9 * dt) throw Error(fmt::format("step from {:.9g} s: {}", t, error.what()));
+      control.shorten(dt, 1);
+    }
+    driver.remember(begin);
+  }
+}
+
 template <int dim>
 PointCurve drive(const PointPath& path, const physics::Material& material, const solve::Time& time) {
   PointCurve curve;
@@ -21,7 +53,12 @@ PointCurve drive(const PointPath& path, const physics::Material& material, const
   std::string apart;  // reason why the faces are separated, if they are
   try {
     PointDriver<dim> driver(path, material);
+    curve.quantities = driver.quantities();
     curve.initial = driver.initial(time.start);
+    if (time.chooses_steps()) {
+      choose_steps(driver, time, curve.states);
+      return curve;
+    }
     Real last = time.start;
     for (std::size_t k = 0; k < times.size(); last = times[k], ++k) {
       step = fmt::format("step {} of {}, ", k + 1, times.size());
@@ -68,6 +105,10 @@ void PointPath::describe(base::Section& s) {
   s.entry(initial_traction, "initial traction", "Pa", base::any(),
           "initial traction per component n, t[, t2]; jumps and displacements are relative to the jump under this "
           "traction");
+  s.entry(
+      slip_path, "slip path", "m", base::at_least(0),
+      "length of the path of the initial slip, of joints with a \"reference state\" in situ; absent: the size of the "
+      "plastic jump");
   if (!s.complete()) return;
   if (control.size() < 2 || control.size() > 3) s.fail("control", "needs 2 components (2D) or 3 (3D)");
   if (path.size() != control.size())
@@ -87,6 +128,19 @@ void PointPath::describe(base::Section& s) {
   }
 }
 
+std::array<Real, 3> PointPath::start_traction() const {
+  std::array<Real, 3> traction{};
+  std::copy(initial_traction.begin(), initial_traction.end(), traction.begin());
+  return traction;
+}
+
+laws::JointParameters PointPath::joint_of(const physics::Material& from) const {
+  auto joint = from.joint({});
+  std::copy(plastic_jump.begin(), plastic_jump.end(), joint.plastic_jump.begin());
+  joint.slip_path = slip_path;
+  return joint.in_situ ? laws::unloaded(joint, start_traction(), static_cast<int>(control.size())) : joint;
+}
+
 void PointScene::describe(base::Section& s) {
   s.named_sections(tables, "Tables", "piecewise linear functions for use in expressions by name");
   s.named_expressions(expressions, "Expressions", "named expressions for use in all other expressions");
@@ -98,10 +152,8 @@ void PointScene::describe(base::Section& s) {
   s.named_sections(specimens, "Specimens",
                    "paths of several points, by names of your choice, in place of the section Point");
   if (!s.complete()) return;
-  if (time.chooses_steps())
-    s.fail_inside(
-        "Time: chooses steps by \"tolerance\" or \"target Newton iterations\", which needs a mesh; give \"steps\" or "
-        "a \"schedule\"");
+  if (time.newton_iterations)
+    s.fail_inside("Time: chooses steps by \"target Newton iterations\", which needs a mesh; leave it out");
   if (one && !specimens.empty()) s.fail_inside("Specimens: given in addition to \"Point\"; leave one of them out");
   if (!one && specimens.empty())
     s.fail_inside("Point: missing, and so are \"Specimens\"; a scene of points needs either");
@@ -113,7 +165,20 @@ void PointScene::check_material(base::Section& s, const std::string& place, cons
   physics::add_library_materials(materials, {path.material});
   const std::string wrong = physics::wrong_material(path.material, "joint", materials);
   if (!wrong.empty()) s.fail_inside(fmt::format("{} > \"material\": {}", place, wrong));
-  if (!wrong.empty() || path.control.size() != 3) return;
+  if (!wrong.empty()) return;
+  if (time.tolerance && !materials.at(path.material).depends_on_rate())
+    s.fail_inside(fmt::format(
+        "Time: chooses steps by \"tolerance\", which needs a mesh or friction that depends on the slip rate; "
+        "{} > \"material\" has friction \"{}\". Give \"steps\" or a \"schedule\"",
+        place, materials.at(path.material).friction));
+  if (materials.at(path.material).is_in_situ() && path.initial_traction.empty())
+    s.fail_inside(
+        fmt::format("{} > \"initial traction\": missing; it is required with the \"reference state\" {} of "
+                    "the joint",
+                    place, materials.at(path.material).reference_state));
+  if (path.slip_path > 0 && !materials.at(path.material).is_in_situ())
+    s.fail_inside(fmt::format("{} > \"slip path\": requires the \"reference state\" in situ of the joint", place));
+  if (path.control.size() != 3) return;
   for (const auto& [entry, what] : materials.at(path.material).only_in_2d())
     s.fail_inside(fmt::format("Materials > {} > \"{}\": {}", path.material, entry, what));
 }
@@ -162,20 +227,33 @@ std::vector<PointState> drive_point(const PointScene& scene) {
 void write_csv(std::ostream& out, const std::vector<PointCurve>& curves) {
   std::size_t dim = 2;
   bool are_named = false;
+  std::vector<std::string> quantities;
   for (const auto& curve : curves) {
     dim = std::max(dim, curve.initial.jump.size());
     are_named = are_named || !curve.specimen.empty();
+    for (const auto& name : curve.quantities)
+      if (std::find(quantities.begin(), quantities.end(), name) == quantities.end()) quantities.push_back(name);
   }
   out << (are_named ? "specimen,t,state" : "t,state");
   for (const char* name : {"jump", "elastic_jump", "plastic_jump", "traction"})
     for (std::size_t i = 0; i < dim; ++i) out << ',' << name << '_' << axis(dim, i);
-  out << ",strength\n";
+  out << ",strength,aperture";
+  for (auto name : quantities) {
+    std::replace(name.begin(), name.end(), ' ', '_');
+    out << ',' << name;
+  }
+  out << '\n';
   const auto write = [&](const PointCurve& curve, const PointState& s) {
     if (are_named) out << in_quotes(curve.specimen) << ',';
     out << fmt::format("{:.17g},{}", s.t, static_cast<int>(s.contact));
     for (const auto* values : {&s.jump, &s.elastic, &s.plastic, &s.traction})
       for (std::size_t i = 0; i < dim; ++i) out << fmt::format(",{:.17g}", i < values->size() ? (*values)[i] : 0);
-    out << fmt::format(",{:.17g}\n", s.strength);
+    out << fmt::format(",{:.17g},{:.17g}", s.strength, s.aperture);
+    for (const auto& name : quantities) {
+      const auto k = std::find(curve.quantities.begin(), curve.quantities.end(), name) - curve.quantities.begin();
+      out << fmt::format(",{:.17g}", k < std::ssize(s.quantities) ? s.quantities[k] : 0);
+    }
+    out << '\n';
   };
   for (const auto& curve : curves) {
     if (curve.initial.jump.empty()) continue;

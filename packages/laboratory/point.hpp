@@ -20,7 +20,11 @@ struct PointPath {
   Real normal_stiffness = 0, tangential_stiffness = 0;  ///< k of a column, Pa/m
   std::vector<Real> plastic_jump;                       ///< initial tangential plastic jump, m; default 0
   std::vector<Real> initial_traction;                   ///< lambda_0, Pa; default 0
+  Real slip_path = 0;                                   ///< path length of the initial slip, m; of joints in situ
   void describe(base::Section& section);
+  std::array<Real, 3> start_traction() const;  ///< lambda_0 or zero, Pa
+  /// Joint of the material with the initial state of the path; if in situ, unloaded. Throws an Error if there is none.
+  laws::JointParameters joint_of(const physics::Material& material) const;
 };
 
 /// One point, or several specimens with common time steps.
@@ -52,23 +56,28 @@ struct PointState {
   Real t = 0;
   laws::ContactState contact = laws::ContactState::open;
   std::vector<Real> jump = {}, elastic = {}, plastic = {}, traction = {};  ///< n, t[, t2]
-  Real strength = 0;        ///< bound of |lambda_t| for this normal traction and slip, Pa
-  std::string remark = {};  ///< description of a slip jump for users, or empty
-  bool slip_jumps = false;  ///< slip jumped since the previous state
+  Real strength = 0;                  ///< bound of |lambda_t| for this normal traction and slip, Pa
+  Real aperture = 0;                  ///< mechanical aperture (15), m
+  std::vector<Real> quantities = {};  ///< of laws that depend on the slip rate, see PointCurve
+  std::string remark = {};            ///< description of a slip jump for users, or empty
+  bool slip_jumps = false;            ///< slip jumped since the previous state
+  laws::StepDefect defect = {};       ///< error of the step by friction that depends on the slip rate
 };
 
 /// States along a path, up to the first step without a state.
 struct PointCurve {
   PointState initial = {};
   std::vector<PointState> states = {};
-  std::string failure = {};   ///< file, place, step and reason, if a step has no state
-  std::string specimen = {};  ///< name of the specimen, if the scene has several
+  std::string failure = {};                  ///< file, place, step and reason, if a step has no state
+  std::string specimen = {};                 ///< name of the specimen, if the scene has several
+  std::vector<std::string> quantities = {};  ///< names of PointState::quantities
 };
 
-/// Integrates the path with implicit Euler, one state per step. A step has no state if the prescribed values admit
-/// none. Examples are a jump impossible for a rigid joint, and a shear traction above the friction bound. If the bound
-/// decreases with slip faster than the loading system unloads, slip jumps. The step is then divided and has states just
-/// before and after the jump.
+/// Integrates the path with implicit Euler, one state per step. With friction that depends on the slip rate, the order
+/// is 2, and Time > tolerance selects the steps by the errors of slip rate and state. A step has no state if the
+/// prescribed values admit none. Examples are a jump impossible for a rigid joint, and a shear traction above the
+/// friction bound. If the bound decreases with slip faster than the loading system unloads, slip jumps. The step is
+/// then divided and has states just before and after the jump.
 std::vector<PointCurve> drive_points(const PointScene& scene);
 
 /// Returns the states of a scene with one point, at the ends of steps and at jumps. Throws an Error if a step has no
@@ -76,7 +85,7 @@ std::vector<PointCurve> drive_points(const PointScene& scene);
 std::vector<PointState> drive_point(const PointScene& scene);
 
 /// Writes all states as CSV with 17 digits. Columns: specimen (if several), t, contact state (0 open, 1 stick, 2 slip),
-/// then jump, elastic jump, plastic jump and traction by component, and strength.
+/// then jump, elastic jump, plastic jump and traction by component, strength, aperture, and the quantities of laws.
 void write_csv(std::ostream& out, const std::vector<PointCurve>& curves);
 
 }  // namespace sprekk::laboratory

@@ -17,11 +17,12 @@ class PointDriver {
  public:
   using Joint = JointPoint<dim>;
 
-  PointDriver(const PointPath& path, const physics::Material& material) : joint_(path, material.joint({0, 0, 0}).law) {}
+  PointDriver(const PointPath& path, const physics::Material& material) : joint_(path, path.joint_of(material)) {}
 
   /// State before the first step: without traction, or under the initial traction.
   PointState initial(Real t) {
     Real f[2 * dim], J[4 * dim * dim];
+    joint_.time = t;
     joint_.constants = laws::augmentation(joint_.law, joint_.typical_stiffness());
     return joint_.state(t, joint_.evaluate(f, J));
   }
@@ -52,10 +53,17 @@ class PointDriver {
     return states;
   }
 
+  /// Data changed by steps.
+  typename Joint::Memory memory() const { return joint_.memory(); }
+  void remember(const typename Joint::Memory& memory) { joint_.remember(memory); }
+
   /// Returns true if the tension prescribed at t exceeds the present strength: there is no state, the joint separates.
   bool is_pulled(Real t) const { return joint_.is_pulled(t); }
   /// Sets a fully open joint without traction. The prescribed tangential jumps at t apply.
   void part(Real t) { joint_.part(t); }
+
+  /// Names of PointState::quantities.
+  const std::vector<std::string>& quantities() const { return joint_.names; }
 
   /// Number of law evaluations with derivatives, one per residual evaluation.
   long evaluations() const { return joint_.evaluations; }
@@ -105,6 +113,7 @@ class PointDriver {
       Real last = from, none = t;
       while (none - last > resolution * (t - from)) {
         const Real middle = last + (none - last) / 2;
+        if (middle <= last || middle >= none) break;  // neighbouring numbers
         joint_.remember(begin);
         (has_state(middle) ? last : none) = middle;
       }
@@ -141,6 +150,7 @@ class PointDriver {
   /// Computes the state at t from the last state. Throws an Error if no start of the iteration succeeds.
   PointState step(Real t) {
     for (int i = 0; i < dim; ++i) joint_.prescribed[i] = joint_.path.path[i]({0, 0, 0}, t);
+    joint_.duration = t - joint_.time;
     Real old[2 * dim];
     std::copy_n(joint_.unknowns, 2 * dim, old);
     std::string reason;

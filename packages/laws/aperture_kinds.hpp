@@ -9,7 +9,8 @@ namespace sprekk::laws {
 
 // clang-format off
 
-/// Hydraulic aperture, m, at the mechanical aperture a, m: Real hydraulic(Real a) and its derivative slope(a).
+/// Hydraulic aperture, m, at the mechanical aperture a, m: Real hydraulic(Real a), its derivative slope(a), and the
+/// inverse mechanical(e).
 using ApertureKinds = Kinds<
     MechanicalAperture,
     BartonAperture>;

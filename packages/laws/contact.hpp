@@ -29,7 +29,8 @@ struct Numbers {
   KOKKOS_INLINE_FUNCTION Numbers from(int i) const { return {first ? first + i * stride : nullptr, stride}; }
 };
 
-/// History variables of a law on a face at the end of the last step. All are 0 at the start.
+/// History variables of a law on a face at the end of the last step. They start at 0; for those of joints in situ see
+/// joint_start.hpp.
 using History = Numbers<const Real>;
 
 /// Contact quantities at a point of a joint. Tension is positive. Tangential vectors are (t1[, t2]) in the face frame.
@@ -52,6 +53,7 @@ struct Contact {
   bool open = false;               ///< no traction; known at the end of a step only
   Real rubs = 1;                   ///< share of the step's slip that wears; below 1 at the end of a step only
   History history = {};            ///< history variables of the called law
+  Real duration = 0;               ///< length of the step, s; 0 outside of a step
 
   /// Returns use(contact), where the history variables of `contact` begin `offset` numbers later.
   template <class Use>
@@ -61,6 +63,12 @@ struct Contact {
     other.history = history.from(offset);
     return use(other);
   }
+};
+
+/// Errors of a step by friction that depends on the slip rate: of the logarithms of slip rate and state at its end,
+/// and of the growth of instabilities. Negative: unknown.
+struct StepDefect {
+  Real rate = 0, state = 0, growth = 0;
 };
 
 }  // namespace sprekk::laws

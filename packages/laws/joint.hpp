@@ -8,6 +8,7 @@
 #include "laws/contact.hpp"
 #include "laws/joint_fwd.hpp"
 #include "laws/joint_kinds.hpp"
+#include "laws/rated_slip.hpp"
 
 #include <cmath>
 
@@ -140,6 +141,26 @@ struct JointLaw {
     else
       return !is_bonded() && is(friction);
   }
+  /// True if friction depends on the slip rate, see rated_slip.hpp. Not available with a bond or damage.
+  KOKKOS_INLINE_FUNCTION bool depends_on_rate() const {
+    return if_rated<bool>(friction, [](const auto&) { return true; });
+  }
+  /// Derivative of friction_bound() in the slip of the step, Pa/m, and the largest decrease of friction_bound() by
+  /// slip, divided by the compression, 1/m; of friction that depends on the slip rate.
+  KOKKOS_INLINE_FUNCTION Real hardening(const Contact<Real>& at) const {
+    return strength * rated<Real>(at, [](const auto& law, const auto& own) { return law.hardening(own); });
+  }
+  KOKKOS_INLINE_FUNCTION Real softening(const Contact<Real>& at) const {
+    return strength * rated<Real>(at, [](const auto& law, const auto& own) { return law.softening(own); });
+  }
+  /// Errors of a step by rate-dependent friction. `at` is the contact at its end, with the history variables of its
+  /// beginning.
+  KOKKOS_INLINE_FUNCTION StepDefect defect_of_step(const Contact<Real>& at) const {
+    return rated<StepDefect>(at, [](const auto& law, const auto& own) {
+      if constexpr (requires { law.defect_of_step(own); }) return law.defect_of_step(own);
+      return StepDefect();
+    });
+  }
   template <class T>
   KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>& at) const {
     return at.after(of_gap() + laws::n_history(friction), [&](const auto& own) { return elastic.compliance(own); });
@@ -208,6 +229,12 @@ struct JointLaw {
     }
     return high;
   }
+  template <class Result, class Use>
+  KOKKOS_INLINE_FUNCTION Result rated(const Contact<Real>& at, const Use& use) const {
+    return at.after(of_gap(), [&](const auto& own) {
+      return if_rated<Result>(friction, [&](const auto& law) { return use(law, own); });
+    });
+  }
   KOKKOS_INLINE_FUNCTION bool wears() const { return laws::n_history(damage) > 0; }
   template <class T>
   KOKKOS_INLINE_FUNCTION T unworn_friction(const Contact<T>& at) const {
@@ -261,11 +288,14 @@ KOKKOS_INLINE_FUNCTION Contact<T> contact(const T& lambda_n, const T& size, cons
   return at;
 }
 
-/// Returns the contact of a converged face with jump w, traction lambda and plastic tangential jump p.
+/// Returns the contact of a converged face with jump w, traction lambda and plastic tangential jump p. Under friction
+/// that depends on the slip rate, the slip of the step is the projected one for c_t, Pa/m: round-off may exceed the
+/// difference p - p_old of slow slip.
 template <int dim, class Law>
 KOKKOS_INLINE_FUNCTION Contact<Real> converged(const Law& law, ContactState state, const Real (&w)[dim],
                                                const Real (&lambda)[dim], const Real (&p)[dim - 1],
-                                               const Real (&p_old)[dim - 1], const History& history) {
+                                               const Real (&p_old)[dim - 1], const History& history, Real duration = 0,
+                                               Real c_t = 0) {
   auto at = contact<dim>(lambda[0], norm(p), p, p_old, history);
   Real step[dim - 1], shear[dim - 1];
   for (int i = 0; i < dim - 1; ++i) {
@@ -277,6 +307,12 @@ KOKKOS_INLINE_FUNCTION Contact<Real> converged(const Law& law, ContactState stat
   at.shear = norm(shear);
   at.separation = w[0] - law.normal_gap(at);
   at.open = state == ContactState::open;
+  at.duration = duration;
+  if (duration > 0 && !at.open && law.depends_on_rate()) {
+    const Real c = rated_constant(law, at, c_t);
+    for (int i = 0; i < dim - 1; ++i) shear[i] += c * step[i];
+    at.slip_of_step = projected_slip(law, at, norm(shear), c);
+  }
   return at;
 }
 
@@ -340,14 +376,16 @@ KOKKOS_INLINE_FUNCTION bool turn_along(const T (&v)[n], const Real (&old)[n], co
 ///
 /// Iterates of a slipping face may have p.z < 0 <= p_old.z, which no solution has. Dilation may then soften the face,
 /// with 1/k = B' + mu tan(theta) p.z/(|p||z| K_t), and the matrix may be far from symmetric. Therefore d|p| = z.dp/|z|,
-/// as for p parallel to z. The slip of the step passed to the laws is the component of p - p_old along z. It equals
-/// |p - p_old| in solutions and is smooth at the onset of slip.
+/// as for p parallel to z. Friction that depends on the slip rate has a residual of its own, see rated_slip.hpp, if a
+/// `duration` of the step, s, is given. The slip of the step passed to the laws is the component of p - p_old along z.
+/// It equals |p - p_old| in solutions and is smooth at the onset of slip.
 template <int dim, class T, class Law>
 KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augmentation& c, const T (&w)[dim],
                                                      const T (&lambda)[dim], const Real (&p_old)[dim - 1], T (&R)[dim],
-                                                     const History& history = {}) {
+                                                     const History& history = {}, Real duration = 0) {
   T p[dim - 1] = {}, step[dim - 1], z[dim - 1];
   auto at = contact<dim>(lambda[0], T(0), p, p_old, history);
+  at.duration = duration;
   const T compliance = law.compliance(at);
   for (int i = 0; i < dim - 1; ++i) {
     at.plastic_jump[i] = p[i] = w[i + 1] - compliance * lambda[i + 1];
@@ -408,6 +446,8 @@ KOKKOS_INLINE_FUNCTION ContactState contact_residual(const Law& law, const Augme
     for (int i = 0; i < dim - 1; ++i) R[i + 1] = -c.tangential * step[i];
     return ContactState::stick;
   };
+  if constexpr (requires { law.depends_on_rate(); })
+    if (duration > 0 && law.depends_on_rate()) return rated_residual(law, c.tangential, lambda, step, at, R);
   if constexpr (requires { law.never_slips(); })
     if (law.never_slips()) return stick();
   if (bears_at_rest && size <= b) return stick();

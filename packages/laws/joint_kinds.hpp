@@ -17,11 +17,13 @@
 #include "laws/dilation/decaying_angle.hpp"
 #include "laws/dilation/limited.hpp"
 #include "laws/dilation/mobilised.hpp"
+#include "laws/dilation/rate_dilatancy.hpp"
 #include "laws/friction/barton_choubey.hpp"
 #include "laws/friction/composed.hpp"
 #include "laws/friction/coulomb.hpp"
 #include "laws/friction/mobilised_barton_choubey.hpp"
 #include "laws/friction/no_slip.hpp"
+#include "laws/friction/rate_state.hpp"
 #include "laws/friction/slip_weakening.hpp"
 #include "laws/shear/linear.hpp"
 #include "laws/shear/power.hpp"
@@ -37,21 +39,26 @@ using ShearKinds = Kinds<
     LinearShear,
     PowerShear>;
 
-/// Bound on the shear traction: T bound(Contact<T>), Pa.
+/// Bound on the shear traction: T bound(Contact<T>), Pa. Laws that may depend on the slip rate also have
+/// bool depends_on_rate(); Real hardening(Contact<Real>), Pa/m; Real softening(Contact<Real>), 1/m, see rated_slip.hpp.
 using FrictionKinds = Kinds<
     CoulombFriction,
     BartonChoubeyFriction,
     MobilisedBartonChoubeyFriction,
     ComposedFriction,
     SlipWeakeningFriction,
-    NoSlip>;
+    NoSlip,
+    AgeingFriction,
+    SlipLawFriction>;
 
-/// Opening of the joint by slip: T opening(Contact<T>), m.
+/// Opening of the joint by slip: T opening(Contact<T>), m. It may depend on the length of the step only with friction
+/// that depends on the slip rate.
 using DilationKinds = Kinds<
     ConstantDilation,
     MobilisedDilation,
     DecayingDilation,
-    LimitedDilation>;
+    LimitedDilation,
+    RateDilatancy>;
 
 /// Closure of the joint by compression: T opening(Contact<T>), m, negative; Real initial_compliance(), m/Pa.
 using ClosureKinds = Kinds<

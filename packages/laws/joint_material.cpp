@@ -143,7 +143,7 @@ void for_each_number(const JointMaterial& material, const Role& role, const Visi
       if (chosen->number[k] != number) continue;
       const auto& entry = chosen->entries[k];
       names.push_back(entry.name);
-      needed = needed || !(entry.optional || entry.otherwise);
+      needed = needed || !(entry.optional || entry.otherwise || (entry.found_in_situ && material.is_in_situ()));
       if (material.entry(entry.name)) given.push_back(entry.name);
     }
     if (!names.empty()) visit(names, given, needed);
@@ -202,6 +202,14 @@ std::string not_here(const JointMaterial& material, const std::string& entry) {
                      base::quoted_list(here));
 }
 
+/// Returns whether a selected law has this entry.
+bool is_in_use(const JointMaterial& material, const std::string& entry) {
+  return std::any_of(roles().begin(), roles().end(), [&](const auto& role) {
+    const auto* chosen = role.kind_of(material);
+    return chosen && entry_of(*chosen, entry);
+  });
+}
+
 /// Declares the entries of a part, except those already `described`: several parts may share entries.
 void describe_role(base::Section& s, JointMaterial& material, const Role& role, bool of_all,
                    std::set<std::string>& described) {
@@ -213,13 +221,17 @@ void describe_role(base::Section& s, JointMaterial& material, const Role& role, 
     const auto* own = chosen ? entry_of(*chosen, entry.name) : nullptr;
     auto& value = material.entry(entry.name);
     if (own && !value && own->otherwise) value = *own->otherwise;
-    // entries of other laws set by a host are declared too, so that reading them reports an error
-    const bool is_set = value && !(entry.otherwise && value->text() == Value(*entry.otherwise).text());
-    if (own || of_all || is_set) {
+    if (own || of_all) {
       describe_entry(s, role, own ? *own : entry, value, of_all);
       described.insert(entry.name);
     } else {
-      s.hint({entry.name}, not_here(material, entry.name));
+      const auto reason = not_here(material, entry.name);
+      const bool is_set = value && !(entry.otherwise && value->text() == Value(*entry.otherwise).text());
+      if (is_set && !is_in_use(material, entry.name)) {  // by a host; entries of a file are declared only
+        s.fail(entry.name, "unknown. " + reason);
+        described.insert(entry.name);
+      }
+      s.hint({entry.name}, reason);
     }
     const std::string owners = own ? "" : " It belongs to " + owners_of(entry.name, false);
     s.hint(entry.others, fmt::format("Did you mean \"{}\"?{}", entry.name, owners));
@@ -328,7 +340,11 @@ void JointMaterial::describe(base::Section& s, bool of_all_kinds) {
     describe_role(s, *this, role, of_all_kinds, described);
   }
   s.entry(initial_aperture, "initial aperture", "m", base::at_least(0),
-          "aperture a0 of (15), without load and slip; typical: 1e-6 to 3e-4 (material library)");
+          "aperture a0 of (15), without load and slip, or that of another \"reference state\"; typical: 1e-6 to 3e-4 "
+          "(material library)");
+  s.choice(reference_state, "reference state", {"unloaded", "in situ", "in situ hydraulic"},
+           "state of the joint with the initial aperture; unloaded: without load and slip; in situ: with the initial "
+           "stress, pressure and slip; in situ hydraulic: likewise, and the value is the hydraulic aperture");
   s.entry(strength_reduction, "strength reduction factor", "-", base::positive(),
           "reduction factor F: friction and bond of the joint have 1/F of their strength");
   for (const auto& [name, value] : {std::pair("initial gap", &initial_gap), {"initial aperture", &initial_aperture}})
@@ -345,6 +361,10 @@ void JointMaterial::compare_entries(base::Section& s) const {
     if (!entry.needs.empty() && !vanishes(value) && !this->entry(entry.needs))
       s.fail(entry.needs, fmt::format("missing; it is required with a \"{}\" above 0", entry.name));
   });
+  if (is_in_situ() && !vanishes(initial_gap))
+    s.fail("initial gap", fmt::format("must be absent or 0 with \"reference state\" {}: an aperture does not determine "
+                                      "it",
+                                      reference_state));
   if (!s.complete() || !is_uniform() || !missing().empty()) return;
   try {
     joint({});
@@ -393,6 +413,12 @@ void JointMaterial::check(const Point& x) const {
   check_value("initial aperture", initial_aperture, base::at_least(0));
 }
 
+bool JointMaterial::depends_on_rate() const {
+  Joint law;
+  if (missing("friction").empty()) set_part(law.friction, FrictionKinds(), friction, *this, {});
+  return law.depends_on_rate();
+}
+
 JointParameters JointMaterial::joint(const Point& x) const {
   check(x);
   for (const auto& [entry, what] : missing())
@@ -413,7 +439,16 @@ JointParameters JointMaterial::joint(const Point& x) const {
   const Real dilates = dilation_slope(joint.law, at_rest);
   joint.law.sliding_compliance =
       std::max(bound_slope(joint.law, 0) * dilates, Real(0)) * joint.law.elastic.initial_compliance();
-  joint.initial_aperture = initial_aperture(x, 0);
+  joint.initial_aperture = aperture(x);
+  joint.in_situ = is_in_situ();
+  SPREKK_CHECK(
+      !joint.law.depends_on_rate() || (bond == NoBond::name && damage == NoDamage::name),
+      "friction \"{}\" depends on the slip rate and requires bond \"{}\" and damage \"{}\"; they are \"{}\" and "
+      "\"{}\"",
+      friction, NoBond::name, NoDamage::name, bond, damage);
+  SPREKK_CHECK(dilation != RateDilatancy::name || friction == AgeingFriction::name || friction == SlipLawFriction::name,
+               "dilation \"{}\" requires friction \"{}\" or \"{}\", whose state controls the steps; it is \"{}\"",
+               dilation, AgeingFriction::name, SlipLawFriction::name, friction);
   const std::string gain = gain_by_slip(joint.law);
   using Friction = MobilisedBartonChoubeyFriction;
   SPREKK_CHECK(gain.empty() || friction != Friction::name || dilation == MobilisedDilation::name,
@@ -421,6 +456,12 @@ JointParameters JointMaterial::joint(const Point& x) const {
                friction, MobilisedDilation::name);
   SPREKK_CHECK(gain.empty(), "{}", gain);
   return joint;
+}
+
+Real JointMaterial::aperture(const Point& x) const {
+  check(x);
+  const Real a = initial_aperture(x, 0);
+  return reference_state == "in situ hydraulic" ? walls(x).mechanical(a) : a;
 }
 
 HydraulicAperture JointMaterial::walls(const Point& x) const {

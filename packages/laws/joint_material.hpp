@@ -29,7 +29,8 @@ struct JointMaterial {
       normal_stiffness;
   std::map<std::string, std::optional<Value>> more;  ///< [name] all other entries of laws
   Value initial_gap = 0, initial_aperture = 0;
-  Real strength_reduction = 1;  ///< F: divides the friction bound and the bond strength
+  std::string reference_state = "unloaded";  ///< state with the initial aperture, see is_in_situ()
+  Real strength_reduction = 1;               ///< F: divides the friction bound and the bond strength
 
   JointMaterial();
   std::optional<Value>& entry(const std::string& name);  ///< entry of a law, e.g. "friction angle"
@@ -44,10 +45,14 @@ struct JointMaterial {
   std::vector<std::array<std::string, 2>> missing(const std::string& role = "") const;
   /// Laws that are not available in 3D, as pairs (entry, message).
   std::vector<std::array<std::string, 2>> only_in_2d() const;
-  bool is_uniform() const;  ///< no value depends on the position
-  /// Laws at a point. Throws an Error with entry, value and point if a value is out of range.
+  bool is_uniform() const;       ///< no value depends on the position
+  bool depends_on_rate() const;  ///< friction depends on the slip rate; false if friction is incomplete
+  /// Laws at a point. Throws an Error with entry, value and point if a value is out of range. For a joint in situ the
+  /// aperture is that under the initial traction, see laws::unloaded().
   JointParameters joint(const Point& x) const;
-  void check(const Point& x) const;  ///< throws the same errors
+  bool is_in_situ() const { return reference_state != "unloaded"; }
+  Real aperture(const Point& x) const;  ///< mechanical aperture of the reference state, m; throws the same errors
+  void check(const Point& x) const;     ///< throws the same errors
   /// Hydraulic aperture as a function of the mechanical aperture, at a point. Throws the same errors.
   HydraulicAperture walls(const Point& x) const;
 

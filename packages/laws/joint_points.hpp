@@ -37,8 +37,11 @@ struct JointHistory {
 /// | stored_history| [face, number]; empty: none |  | history variables of the laws                    |
 /// | damping      | [face]; empty: zero    | -     | see jacobian()                                   |
 /// | factor       | [face]; empty: 1       | -     | factor of c                                      |
+/// | duration     |                        | s     | length of the step; 0: outside of a step         |
 /// | proximal     |                        | -     | proximal stiffness relative to c, see contact()  |
 /// | anchor       | [face, 2 dim]          | m, Pa | jump and traction at the origin of the proximal term |
+/// | prescribed   | [face, dim]; empty: none| m    | `given` of prescribed_residual(), all `not_prescribed`:  |
+/// |              |                        |       | a face without prescribed slip                   |
 template <int dim>
 struct JointPoints {
   ConstView<Real***> frame;
@@ -49,8 +52,10 @@ struct JointPoints {
   View<Real**> stored_history = {};
   ConstView<Real*> damping = {};
   ConstView<Real*> factor = {};
+  Real duration = 0;
   Real proximal = 0;
   ConstView<Real**> anchor = {};
+  ConstView<Real**> prescribed = {};
 
   /// Augmentation constant c, Pa/m, without the stiffness of the joint.
   KOKKOS_INLINE_FUNCTION Real constant(int f) const {
@@ -74,7 +79,7 @@ struct JointPoints {
   /// Energy dissipated by plastic slip in the step, J/m^2, and its derivatives in w, then in lambda:
   ///   lambda_t . (p_t - p_old) + lambda_n (p_n - p_n,old),   p_t = w_t - lambda_t/K_t,
   /// where p_n is the dilation due to p_t. It is the work of friction minus the work against the compression. It is
-  /// zero if the face sticks or is open.
+  /// zero if the face sticks or is open. With a prescribed slip against the traction it is negative.
   KOKKOS_FUNCTION Real work(int f, const Real (&w)[dim], const Real (&lambda)[dim]) const;
   KOKKOS_FUNCTION void dwork(int f, const Real (&w)[dim], const Real (&lambda)[dim],
                              Real (&derivatives)[2 * dim]) const;
@@ -83,6 +88,7 @@ struct JointPoints {
   KOKKOS_FUNCTION void commit(int f, const JointPoint<dim>& end, const JointHistory& history) const;
 
  private:
+  KOKKOS_INLINE_FUNCTION bool is_prescribed(int f) const;
   template <class T>
   KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
                                       T (&borne)[dim]) const;

@@ -3,6 +3,7 @@
 
 #include "laws/joint.hpp"
 #include "laws/joint_points.hpp"
+#include "laws/prescribed_jump.hpp"
 #include "laws/runaway.hpp"
 
 #include <Sacado.hpp>
@@ -20,6 +21,11 @@ KOKKOS_INLINE_FUNCTION void seed(const Real (&w)[dim], const Real (&lambda)[dim]
     w_fad[i] = JointFad<dim>(2 * dim, i, w[i]);
     lambda_fad[i] = JointFad<dim>(2 * dim, dim + i, lambda[i]);
   }
+}
+
+template <int dim>
+KOKKOS_INLINE_FUNCTION bool JointPoints<dim>::is_prescribed(int f) const {
+  return prescribed.extent(0) > 0 && prescribed(f, 1) != not_prescribed;
 }
 
 /// Computes the traction of contact and friction, and the corresponding jump, without the proximal term. The proximal
@@ -51,7 +57,11 @@ KOKKOS_INLINE_FUNCTION ContactState JointPoints<dim>::evaluate(int f, const T (&
   T jump[dim], borne[dim];
   contact(f, w, traction, jump, borne);
   const auto& joint = law[number(f)];
-  return contact_residual<dim>(joint, laws::augmentation(joint, constant(f)), jump, borne, old, R, history(f));
+  const auto c = laws::augmentation(joint, constant(f));
+  if (!is_prescribed(f)) return contact_residual<dim>(joint, c, jump, borne, old, R, history(f), duration);
+  Real given[dim];
+  for (int i = 0; i < dim; ++i) given[i] = prescribed(f, i);
+  return prescribed_residual<dim>(joint, c, jump, borne, old, given, R, history(f), duration);
 }
 
 template <int dim>
@@ -65,7 +75,8 @@ KOKKOS_INLINE_FUNCTION void JointPoints<dim>::damp(int f, ContactState state, T 
     R[k].fastAccessDx(k) -= stiffness;
     R[k].fastAccessDx(dim + k) += stiffness * compliance;
   };
-  for (int k = 1; k < dim; ++k) add(k, share * constants.tangential, joint.elastic.initial_compliance());
+  for (int k = 1; k < dim && !is_prescribed(f); ++k)
+    add(k, share * constants.tangential, joint.elastic.initial_compliance());
   if (state == ContactState::open) add(0, share * constants.normal, joint.gap.closure.initial_compliance());
 }
 
@@ -84,6 +95,7 @@ KOKKOS_INLINE_FUNCTION T JointPoints<dim>::dissipated(int f, const T (&w)[dim], 
   }
   const auto gap = [&](const T(&jump)[dim - 1]) {
     auto at = laws::contact<dim>(traction[0], norm(jump), jump, old, history(f));
+    at.duration = duration;
     T step[dim - 1], shear[dim - 1];
     for (int i = 0; i < dim - 1; ++i) {
       step[i] = jump[i] - old[i];
@@ -131,8 +143,14 @@ template <int dim>
 KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end, const JointHistory& to) const {
   const auto& joint = law[number(f)];
   const auto& p = to.plastic_jump;
-  to.slid(f, 0) = end.state == ContactState::slip ? 1 : to.slid(f, 0) > 0 ? 2 : 0;
-  if (end.state != ContactState::stick) {
+  bool slides = end.state == ContactState::slip;
+  const bool given = is_prescribed(f);
+  for (int i = 0; i < dim - 1 && given; ++i) {
+    slides = slides || prescribed(f, i + 1) != end.p_old[i];
+    p(f, i) = prescribed(f, i + 1);
+  }
+  to.slid(f, 0) = slides ? 1 : to.slid(f, 0) > 0 ? 2 : 0;
+  if (end.state != ContactState::stick && !given) {
     Real elastic[dim], plastic[dim];
     split_jump<dim>(joint, end.state, end.w, end.traction, end.p_old, elastic, plastic, history(f));
     for (int i = 0; i < dim - 1; ++i) p(f, i) = plastic[i + 1];
@@ -140,7 +158,9 @@ KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end,
   if (stored_history.extent(1) == 0) return;
   Real now[dim - 1];
   for (int i = 0; i < dim - 1; ++i) now[i] = p(f, i);
-  const auto contact = converged<dim>(joint, end.state, end.w, end.traction, now, end.p_old, history(f));
+  auto contact = converged<dim>(joint, end.state, end.w, end.traction, now, end.p_old, history(f), given ? 0 : duration,
+                                laws::augmentation(joint, end.constant).tangential);
+  contact.duration = duration;
   if (end.state == ContactState::slip) {
     const Real slip = runaway_slip(joint, contact, to.softness(f) + joint.elastic.initial_compliance());
     if (slip > to.runaway(f, 0)) to.runaway(f, 0) = slip;

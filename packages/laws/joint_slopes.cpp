@@ -24,6 +24,7 @@ Contact<Fad1> differentiated(const Contact<Real>& at, const Seed& seed) {
     with.last_plastic_jump[i] = at.last_plastic_jump[i];
   }
   with.history = at.history;
+  with.duration = at.duration;
   seed(with);
   return with;
 }

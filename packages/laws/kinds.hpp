@@ -21,12 +21,14 @@ struct Entry {
   std::string meaning;
   std::optional<Real> otherwise = {};    ///< default value
   bool optional = false;                 ///< if absent, the parameter retains its initial value
+  bool found_in_situ = false;            ///< optional if the unloaded joint is computed, see unloaded()
   Real (*number_of)(Real) = nullptr;     ///< converts the entry to the parameter; null: no conversion
   std::string needs = {};                ///< entry that must also be present if this one is above 0
   std::vector<std::string> others = {};  ///< alternative spellings, for error messages
 
   Entry& or_else(Real value) { return otherwise = value, *this; }
   Entry& may_be_absent() { return optional = true, *this; }
+  Entry& or_found_in_situ() { return found_in_situ = true, *this; }
   Entry& converted(Real (*function)(Real)) { return number_of = function, *this; }
   Entry& with(const std::string& entry) { return needs = entry, *this; }
   Entry& also_called(const std::vector<std::string>& names) { return others = names, *this; }
@@ -211,6 +213,18 @@ KOKKOS_INLINE_FUNCTION bool takes_damage(const K& law) {
     return law.visit([](const auto& one) { return applies_damage<std::decay_t<decltype(one)>>; });
   } else {
     return applies_damage<K>;
+  }
+}
+
+/// Returns use(law) for the law or, for Kinds, the stored law if it depends on the slip rate; otherwise Result().
+template <class Result, class K, class Use>
+KOKKOS_INLINE_FUNCTION Result if_rated(const K& law, const Use& use) {
+  if constexpr (is_one_of_several<K>) {
+    return law.visit([&](const auto& one) { return if_rated<Result>(one, use); });
+  } else if constexpr (requires { law.depends_on_rate(); }) {
+    return law.depends_on_rate() ? Result(use(law)) : Result();
+  } else {
+    return Result();
   }
 }
 

@@ -49,7 +49,7 @@ class Distributor {
         part_(part),
         nodes_per_cell_(n_nodes(global.shape)),
         pieces_(find_pieces(global)),
-        ridges_(find_ridges(global)) {
+        at_points_(find_faces_at_points(global)) {
     check(n_ranks);
     node_owner_ = node_owners(n_ranks);
     report_ = report(global, part, n_ranks);
@@ -84,7 +84,7 @@ class Distributor {
   const std::vector<int>& part_;
   const int nodes_per_cell_;
   const Bodies pieces_;
-  const std::vector<std::vector<GlobalIndex>> ridges_;
+  const std::vector<std::vector<GlobalIndex>> at_points_;  // see find_faces_at_points()
   int rank_ = 0;
   std::vector<int> node_owner_;
   PartitionReport report_;
@@ -125,25 +125,25 @@ class Distributor {
     for (const auto& face : global_.fracture_faces)
       if (part_[face.cell[minus]] == rank_) result[face.cell[plus]] = true;
     const auto minus_cell = [&](GlobalIndex face) { return global_.fracture_faces[face].cell[minus]; };
-    for (const auto& faces : ridges_)
+    for (const auto& faces : at_points_)
       if (std::any_of(faces.begin(), faces.end(), [&](GlobalIndex face) { return part_[minus_cell(face)] == rank_; }))
         for (const GlobalIndex face : faces) result[minus_cell(face)] = true;
     return result;
   }
 
-  /// Fracture faces at each ridge with several faces.
-  static std::vector<std::vector<GlobalIndex>> find_ridges(const GlobalMesh& mesh) {
-    std::vector<std::pair<std::array<GlobalIndex, 2>, GlobalIndex>> ends;
+  /// Fracture faces at each corner point with several faces.
+  static std::vector<std::vector<GlobalIndex>> find_faces_at_points(const GlobalMesh& mesh) {
+    std::vector<std::array<GlobalIndex, 2>> ends;  // point, face
     for (std::size_t id = 0; id < mesh.fracture_faces.size(); ++id)
       for (int k = 0; k < n_face_corners(mesh.shape); ++k)
-        ends.emplace_back(ridge_points(corners_of(mesh, id), mesh.shape, k), id);
+        ends.push_back({corners_of(mesh, id)[k], static_cast<GlobalIndex>(id)});
     std::sort(ends.begin(), ends.end());
     std::vector<std::vector<GlobalIndex>> result;
     for (auto first = ends.begin(), end = first; first != ends.end(); first = end) {
-      end = std::find_if(first, ends.end(), [&](const auto& other) { return other.first != first->first; });
+      end = std::find_if(first, ends.end(), [&](const auto& other) { return other[0] != (*first)[0]; });
       if (end - first < 2) continue;
       result.emplace_back();
-      std::transform(first, end, std::back_inserter(result.back()), [](const auto& one) { return one.second; });
+      std::transform(first, end, std::back_inserter(result.back()), [](const auto& one) { return one[1]; });
     }
     return result;
   }

@@ -15,16 +15,6 @@ FaceCorners corners_of(const GlobalMesh& mesh, GlobalIndex cell, int local_face)
   return result;
 }
 
-/// Corner k of a fracture face, cyclic.
-Vector face_corner(const Mesh& mesh, LocalIndex face, int k) {
-  const auto& fracture = mesh.fracture_faces[face];
-  const int side = fracture.cell[minus] >= 0 ? minus : plus;
-  Vector x{0, 0, 0};
-  std::copy_n(&mesh.coordinates[fracture.nodes[side][k % n_face_corners(mesh.shape)] * mesh.dim()], mesh.dim(),
-              x.begin());
-  return x;
-}
-
 }  // namespace
 
 Vector point(const GlobalMesh& mesh, GlobalIndex node) {
@@ -60,6 +50,15 @@ Vector area_vector(const FaceCorners& corners) {
     default:
       return 0.5 * cross(edge(0, 2), edge(1, 3));
   }
+}
+
+Vector face_corner(const Mesh& mesh, LocalIndex face, int k) {
+  const auto& fracture = mesh.fracture_faces[face];
+  const int side = fracture.cell[minus] >= 0 ? minus : plus;
+  Vector x{0, 0, 0};
+  std::copy_n(&mesh.coordinates[fracture.nodes[side][k % n_face_corners(mesh.shape)] * mesh.dim()], mesh.dim(),
+              x.begin());
+  return x;
 }
 
 Vector ridge_centre(const Mesh& mesh, LocalIndex face, int k) {

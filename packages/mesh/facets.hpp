@@ -72,6 +72,9 @@ inline std::array<GlobalIndex, 2> ridge_points(const std::array<GlobalIndex, 4>&
   return {a < b ? a : b, a < b ? b : a};
 }
 
+/// Corner k of a fracture face, cyclic, m.
+Vector face_corner(const Mesh& mesh, LocalIndex face, int k);
+
 /// ridge_centre() returns the midpoint of ridge k of a fracture face, ridge_length() its length, m; 1 in 2D.
 Vector ridge_centre(const Mesh& mesh, LocalIndex face, int k);
 Real ridge_length(const Mesh& mesh, LocalIndex face, int k);

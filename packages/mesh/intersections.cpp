@@ -12,9 +12,14 @@ namespace {
 
 using Nodes = std::vector<GlobalIndex>;  ///< set numbers of the nodes of a ridge: ends, ascending, then the middle
 
+/// Returns whether faces of these fractures, in ascending order, form an intersection.
+bool is_intersection_of(const std::vector<int>& fractures) {
+  return fractures.size() > 2 || fractures.front() != fractures.back();
+}
+
 bool do_meet(std::vector<int>& fractures) {
   std::sort(fractures.begin(), fractures.end());
-  return fractures.size() > 2 || fractures.front() != fractures.back();
+  return is_intersection_of(fractures);
 }
 
 /// Ridges of the fracture faces on one rank.
@@ -121,6 +126,42 @@ std::vector<Intersection> intersections(const Mesh& mesh) {
   std::vector<Intersection> result;
   for (auto& [nodes, ridge] : ridges)
     if (do_meet(ridge.fractures)) result.push_back(std::move(ridge));
+  return result;
+}
+
+bool EdgeAtPoint::is_intersection() const { return is_intersection_of(fractures); }
+
+std::vector<std::vector<EdgeAtPoint>> junctions(const Mesh& mesh) {
+  struct Edge {
+    std::array<GlobalIndex, 2> points{};
+    EdgeAtPoint at_first;
+  };
+  const int n = n_face_corners(mesh.shape);
+  std::map<LocalIndex, Edge> edges;  // by facet
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces() && mesh.dim() == 3; ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    for (int k = 0; k < n; ++k) {
+      const LocalIndex facet = mesh.facets->ridge[f * n + k];
+      auto& [points, edge] = edges[facet];
+      edge.fractures.push_back(face.fracture);
+      if (edge.facet >= 0) continue;
+      edge.facet = facet;
+      edge.to_point = face_corner(mesh, f, k) - ridge_centre(mesh, f, k);
+      points = {face.corners[k], face.corners[(k + 1) % n]};
+    }
+  }
+  std::map<GlobalIndex, std::vector<EdgeAtPoint>> at_points;
+  for (auto& [facet, edge] : edges) {
+    auto& end = edge.at_first;
+    if (!do_meet(end.fractures) && end.fractures.size() > 1) continue;
+    at_points[edge.points[0]].push_back(end);
+    end.to_point = -1.0 * end.to_point;
+    at_points[edge.points[1]].push_back(end);
+  }
+  std::vector<std::vector<EdgeAtPoint>> result;
+  for (auto& [point, junction] : at_points)
+    if (std::any_of(junction.begin(), junction.end(), [](const auto& edge) { return edge.is_intersection(); }))
+      result.push_back(std::move(junction));
   return result;
 }
 

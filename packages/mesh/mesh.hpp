@@ -110,7 +110,7 @@ struct Facets {
 /// Ghost cells:
 /// * all cells that share a node with an owned cell;
 /// * the cell on the opposite side of every owned fracture face;
-/// * the minus cells of all fracture faces that share a ridge with an owned face, also of other fractures.
+/// * the minus cells of all fracture faces that share a corner point with an owned face, also of other fractures.
 ///
 /// Local nodes are the nodes of all local cells. Local fracture faces have at least one local cell. With these ghosts,
 /// the rows of owned nodes and facets are assembled from local cells and faces without communication.

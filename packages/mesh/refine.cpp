@@ -79,24 +79,32 @@ class Divider {
       for (int k = 0; k < division_.n_parts(); ++k)
         child_[face.cell[plus] * n_children() + part(face, plus, k).child] = 0;
     }
-    choose_around_ridges();
+    choose_around_points();
     LocalIndex n = 0;
     for (LocalIndex& number : child_)
       if (number >= 0) number = n++;
   }
 
-  /// Selects the minus-side children of parts that share a ridge with a part of an owned face.
-  void choose_around_ridges() {
+  /// Selects the minus-side children of parts that share a point with a part of an owned face: a corner of the face, or
+  /// the middle of a ridge.
+  void choose_around_points() {
     const int n = n_face_corners(shape_);
-    const std::unordered_set<GlobalIndex> owned(ridges_.begin(),
-                                                ridges_.begin() + std::ptrdiff_t(n) * mesh_.n_owned_fracture_faces);
+    const std::unordered_set<GlobalIndex> ridges(ridges_.begin(),
+                                                 ridges_.begin() + std::ptrdiff_t(n) * mesh_.n_owned_fracture_faces);
+    std::unordered_set<GlobalIndex> points;
+    for (LocalIndex f = 0; f < mesh_.n_owned_fracture_faces; ++f)
+      points.insert(mesh_.fracture_faces[f].corners.begin(), mesh_.fracture_faces[f].corners.begin() + n);
     for (LocalIndex f = 0; f < mesh_.n_fracture_faces(); ++f) {
       const auto& face = mesh_.fracture_faces[f];
       if (face.cell[minus] < 0) continue;
-      for (int k = 0; k < n; ++k)
-        for (int end : {k, dimension(shape_) == 2 ? k : (k + 1) % n})
-          if (owned.count(ridges_[f * n + k]))
-            child_[face.cell[minus] * n_children() + part(face, minus, end).child] = 0;
+      const auto choose = [&](int k) { child_[face.cell[minus] * n_children() + part(face, minus, k).child] = 0; };
+      for (int k = 0; k < n; ++k) {
+        if (points.count(face.corners[k])) choose(k);
+        if (dimension(shape_) == 2 || !ridges.count(ridges_[f * n + k])) continue;
+        choose(k);
+        choose((k + 1) % n);
+        for (int inner = n; inner < division_.n_parts(); ++inner) choose(inner);
+      }
     }
   }
 

@@ -43,7 +43,7 @@ std::string Quantity::title() const {
   return what + " of " + (fractures.empty() ? "all fractures" : base::quoted_list(fractures));
 }
 
-Real Quantity::asked(Real value) const {
+Real Quantity::requested(Real value) const {
   return std::max(relative.value_or(0) * std::abs(value), absolute.value_or(0));
 }
 

@@ -24,7 +24,7 @@ struct Quantity : estimate::Functional {   ///< `what`: one of the quantities() 
   /// Text `QUANTITY of "fault 3"`.
   std::string title() const;
   /// Tolerance at a value, in the unit of the quantity. It is 0 if the value is 0 and there is no absolute tolerance.
-  Real asked(Real value) const;
+  Real requested(Real value) const;
   void describe(base::Section& section);
 };
 

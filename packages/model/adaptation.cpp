@@ -32,8 +32,9 @@ std::string Adaptation::Verdict::line() const {
   const auto size = [](Real x) { return std::isfinite(x) ? fmt::format("{:.2g}", x) : std::string("unknown"); };
   const bool known = std::isfinite(error) && error > 0 && value != 0;  // two digits of the error
   const int digits = known ? static_cast<int>(std::ceil(std::log10(std::abs(value) / error))) + 2 : 4;
-  return fmt::format("{}: {:.{}g} {} +- {} ({}, asked {}), space {}, time {}", title, value, std::clamp(digits, 4, 12),
-                     unit, size(error), percent(error, value), percent(asked, value), size(space), size(time));
+  return fmt::format("{}: {:.{}g} {} +- {} ({}, requested {}), space {}, time {}", title, value,
+                     std::clamp(digits, 4, 12), unit, size(error), percent(error, value), percent(requested, value),
+                     size(space), size(time));
 }
 
 namespace {
@@ -87,7 +88,7 @@ void Adaptation::choose_steps(Scene scene, RCP<const Comm> comm) {
     bool enough = true;
     for (const auto& [name, quantity] : scene.accuracy->quantities) {
       const Real change = std::abs(others.at(name) - values.at(name));
-      enough = enough && 2 * change <= share_of_time * quantity.asked(others.at(name));
+      enough = enough && 2 * change <= share_of_time * quantity.requested(others.at(name));
       time_errors_[name] = change;
     }
     if (enough) {
@@ -150,13 +151,14 @@ void Adaptation::judge(const Model& model, const estimate::Goals& goals) {
   order_ = goals.any_balance() ? 1 : mesh::order(mesh.shape);
   for (const auto& [name, quantity] : accuracy.quantities) {
     const auto& now = runs_.back().estimates.at(name);
-    const Real space = space_error(name), asked = quantity.asked(now.value);
+    const Real space = space_error(name), requested = quantity.requested(now.value);
     const auto known = time_errors_.find(name);
     const Real time = known == time_errors_.end() ? std::numeric_limits<Real>::infinity() : known->second;
-    verdicts_.push_back({name, quantity.title(), quantity.unit(mesh.dim()), now.value, space + time, space, time, asked,
-                         runs_.size() > 1 && space + time <= asked});
+    verdicts_.push_back({name, quantity.title(), quantity.unit(mesh.dim()), now.value, space + time, space, time,
+                         requested, runs_.size() > 1 && space + time <= requested});
   }
-  const bool too_long = std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& v) { return v.time > v.asked; });
+  const bool too_long =
+      std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& v) { return v.time > v.requested; });
   why_ = reached()  ? "reached"
          : too_long ? "bisected steps fail, or change it by more than its tolerance (for a value near zero give the "
                       "\"absolute\" error)"
@@ -169,7 +171,7 @@ void Adaptation::judge(const Model& model, const estimate::Goals& goals) {
 std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const estimate::Goals& goals) const {
   std::map<std::string, Real> weights;
   for (const auto& verdict : verdicts_) {
-    const Real left = verdict.asked - verdict.time;
+    const Real left = verdict.requested - verdict.time;
     const Real ratio = left > 0 && std::isfinite(verdict.space) ? verdict.space / left : 1;
     if (!verdict.reached) weights[verdict.name] = std::max<Real>(ratio, 1e-3);
   }
@@ -190,9 +192,9 @@ json Adaptation::summary() const {
   json result = {{"reached", reached()}, {"ended", why_}, {"quantities", json::object()}, {"meshes", json::array()}};
   for (const auto& verdict : verdicts_)
     result["quantities"][verdict.name] = {
-        {"title", verdict.title},         {"unit", verdict.unit},       {"value", verdict.value},
-        {"error", number(verdict.error)}, {"asked", verdict.asked},     {"space", number(verdict.space)},
-        {"time", number(verdict.time)},   {"reached", verdict.reached}, {"line", verdict.line()}};
+        {"title", verdict.title},         {"unit", verdict.unit},           {"value", verdict.value},
+        {"error", number(verdict.error)}, {"requested", verdict.requested}, {"space", number(verdict.space)},
+        {"time", number(verdict.time)},   {"reached", verdict.reached},     {"line", verdict.line()}};
   for (const auto& run : runs_) {
     json one = {{"cells", run.cells}, {"seconds", run.seconds}, {"quantities", json::object()}};
     for (const auto& [name, estimate] : run.estimates)

@@ -19,9 +19,9 @@ class Adaptation {
     std::string name, title, unit;
     Real value, error;  ///< infinite: unknown
     Real space, time;   ///< parts of the error due to the mesh and to the time steps
-    Real asked;
+    Real requested;
     bool reached;
-    /// Text `QUANTITY of "fault": 0.00321 m +- 2.1e-05 (0.65 %, asked 1 %), space 1.8e-05, time 3e-06`.
+    /// Text `QUANTITY of "fault": 0.00321 m +- 2.1e-05 (0.65 %, requested 1 %), space 1.8e-05, time 3e-06`.
     std::string line() const;
   };
 

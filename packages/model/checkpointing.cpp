@@ -17,7 +17,7 @@ EarlierResults Checkpointing::restore() {
   log_.info("going on from t = {}", model_.time());
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
   return {std::move(checkpoint.journal), checkpoint.content.at("restarts"), checkpoint.content.at("probes"),
-          checkpoint.content.value("stages", nlohmann::json::array())};
+          checkpoint.content.value("stages", nlohmann::json::array()), std::move(checkpoint.vectors)};
 }
 
 bool Checkpointing::is_due(int n_steps, bool last) const {
@@ -47,6 +47,7 @@ void Checkpointing::write(const Results& results) {
   checkpoint.content["stages"] = results.stages();
   checkpoint.content["begins stage"] = steps_.is_at_begin_of_stage();
   checkpoint.journal = results.journal(n_saved_steps_);
+  checkpoint.vectors.merge(results.faces());
   try {
     checkpoints_.write(checkpoint);
     n_saved_steps_ = results.n_steps();

@@ -47,6 +47,9 @@ void check(const Model& model) {
     if (P::Rates::exist(scene))
       for (const auto& section : P::Rates::sections()) stores.push_back(section);
   });
+  SPREKK_CHECK(!model.system().evolves(),
+               "{}: a law depends on the rate of its quantities, and so there is no equilibrium at a fixed time",
+               scene.origin);
   SPREKK_CHECK(!model.system().has_rates(),
                "{}: its balances contain storage, and so it has no equilibrium at a fixed time: leave out {}",
                scene.origin, base::quoted_list(stores));

@@ -187,6 +187,14 @@ json described_singles(const mesh::Mesh& mesh) {
   return all;
 }
 
+std::array<long long, 3> counts_of_classes(const Comm& comm, const std::vector<OutputField>& outputs) {
+  std::array<long long, 3> counts{};
+  for (const auto& output : outputs)
+    if (output.summary.classes.size() == counts.size())
+      for (Real value : output.values) ++counts[static_cast<int>(value)];
+  return base::sum_over_ranks(comm, counts);
+}
+
 std::vector<Real> values_of(const json& list) {
   std::vector<Real> values;
   for (const auto& value : list) values.push_back(value.is_null() ? missing : value.get<Real>());

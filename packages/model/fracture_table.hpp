@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,10 @@ nlohmann::json by_sets(const mesh::Mesh& mesh, const std::vector<FractureColumn>
 nlohmann::json by_singles(const std::vector<FractureColumn>& columns);
 /// Units of the columns returned by by_singles().
 nlohmann::json units(const std::vector<FractureColumn>& columns);
+
+/// Returns the numbers of faces in each of three states, of outputs with three classes: open, sticking and slipping
+/// faces. Collective.
+std::array<long long, 3> counts_of_classes(const Comm& comm, const std::vector<assembly::OutputField>& outputs);
 
 /// Returns for each single fracture its name, set, area, centre, mean normal, strike and, in 3D, dip; angles in
 /// degrees. Collective.

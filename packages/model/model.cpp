@@ -87,6 +87,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   scene_ = made.scene;
   system_ = make_system(std::move(made));
   x_ = system_->initial();
+  scene_.is_continued = true;  // from here on the scene only changes
   check_stages();
   start_solver();
 }
@@ -115,8 +116,8 @@ Model::Draft Model::drafted(Scene scene, const std::string& unconstrained) const
 std::unique_ptr<assembly::System> Model::make_system(Draft draft) const {
   const auto& scene = draft.scene;
   const auto mesh = draft.mesh;
-  const auto conditions =
-      physics::dirichlet_conditions(scene.boundary_conditions, scene.regions, physics::names_of(*mesh));
+  const auto conditions = physics::dirichlet_conditions(scene.boundary_conditions, scene.regions,
+                                                        physics::names_of(*mesh), "", scene.fractures);
   auto system = std::make_unique<assembly::System>(
       mesh, std::move(draft.modules), conditions, timers_,
       scene.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
@@ -137,6 +138,7 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   for (const auto& line : misfits(prepared, physics::names_of(*whole_mesh_))) errors.push_back(line);
   base::throw_errors(errors);
   refuse(refused_changes(before, prepared.value));
+  prepared.value.is_continued = true;
   physics::for_each_physics([&]<physics::HasChange P>(P) { P::Change::prepare(*whole_mesh_, before, prepared.value); });
   auto draft = drafted(std::move(prepared.value));
   std::vector<std::string> lines;
@@ -201,7 +203,9 @@ void Model::start_solver() {
   stepper_.reset();
   newton_.reset();
   newton_ = std::make_unique<solve::Newton>(*system_, scene_.solver, timers_);
-  stepper_ = std::make_unique<solve::TimeStepper>(*system_, *newton_, scene_.time.stepping);
+  auto stepping = scene_.time.stepping;
+  stepping.predicts = system_->evolves();
+  stepper_ = std::make_unique<solve::TimeStepper>(*system_, *newton_, stepping);
 }
 
 solve::StepReport Model::step_to(Real t) {

@@ -79,7 +79,8 @@ void Network::Set::describe(base::Section& s) {
           "box that crops the fractures of the file: lowest, then highest coordinates, 4 in 2D, 6 in 3D; empty: the "
           "domain");
   s.entry(corners, "corners", "-", base::between(3, 100),
-          "number of corners of the polygon of an ellipse or a disc; absent: 12 of a disc, 32 of an ellipse");
+          "number of corners of the polygon of an ellipse or a disc; absent: at most 16 of a disc, by \"relative "
+          "size\"; 32 of an ellipse, or with repairs as of a disc");
   s.named_sections(lines, "lines", "polylines in 2D");
   s.named_sections(polygons, "polygons", "plane polygons in 3D, convex or not");
   s.named_sections(ellipses, "ellipses", "ellipses and discs in 3D");

@@ -91,7 +91,7 @@ struct Probes::Known {
       const auto declared = module->declare(mesh);
       for (const auto& output : declared.outputs) outputs.push_back(output.field);
       for (const auto& unknown : declared.unknowns) {
-        const auto& [name, moments, regions, unit] = unknown.reactions;
+        const auto& [name, moments, regions, unit, fractures] = unknown.reactions;
         const int n = unknown.field.n_components;
         on_boundaries.insert({{name, {n, unit}}, {moments, {mesh.dim() == 2 ? 1 : 3, unit + "*m"}}});
         in_regions.insert({regions, {n, unit}});

@@ -32,13 +32,14 @@ void remove_oscillating(const std::string& directory) {
     std::filesystem::remove_all(directory + '/' + oscillating_name + end, ignored);
 }
 
-/// Removes tables and lists of written steps of a previous run. If the run is continued, only the tables of probes are
-/// removed. Ignores failures. Not collective.
+/// Removes tables and lists of written steps of a previous run. If the run is continued, only the tables of probes and
+/// of states are removed. Ignores failures. Not collective.
 void remove_tables(const std::string& directory, bool goes_on) {
   std::error_code ignored;
   std::filesystem::remove(directory + "/probes.h5", ignored);
   for (const char* name : {"fractures.csv", "events.csv", "bulk.pvd", "fractures.pvd"})
     if (!goes_on) std::filesystem::remove(directory + '/' + name, ignored);
+  for (const auto& name : names_of_tables()) std::filesystem::remove(directory + '/' + name + ".csv", ignored);
   const std::filesystem::path probes = directory + "/probes";
   for (const auto& entry : std::filesystem::directory_iterator(probes, ignored))
     if (entry.path().extension() == ".csv") std::filesystem::remove(entry.path(), ignored);
@@ -86,15 +87,6 @@ std::vector<io::SeriesRow> earlier_rows(const std::string& name, const json& beg
   return rows;
 }
 
-/// Numbers of open, sticking and slipping faces. Collective.
-std::array<long long, 3> counts_of_classes(const Comm& comm, const std::vector<OutputField>& outputs) {
-  std::array<long long, 3> counts{};
-  for (const auto& output : outputs)
-    if (output.summary.classes.size() == counts.size())
-      for (Real value : output.values) ++counts[static_cast<int>(value)];
-  return base::sum_over_ranks(comm, counts);
-}
-
 }  // namespace
 
 void write_failure(const Comm& comm, const std::string& directory, const std::string& reason, bool only_replace) {
@@ -139,6 +131,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   const auto& accuracy = model_.scene().accuracy;
   if (model_.scene().output.error_estimate || accuracy) estimator_.emplace(make_error_estimator(model_));
   if (accuracy) goals_.emplace(*estimator_, accuracy->functionals());
+  tables_.emplace(model_);
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
   json_["ranks"] = comm->getSize();
@@ -170,6 +163,15 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
   }
+  if (!earlier && (!probes_.empty() || model_.scene().output.events)) {
+    auto memory = model_.system().memory();
+    memory.t = model_.time();
+    model_.system().resume(model_.state(), memory);
+  }
+  if (const auto& rule = model_.scene().output.events; rule && !mesh.fracture_names.empty()) {
+    catalogue_.emplace(mesh, rule->rate, model_.time(), model_.system().outputs(model_.state()));
+    if (earlier) catalogue_->resume(mesh, earlier->journal, earlier->faces);
+  }
   if (!probes_.empty()) start_probes(earlier);
   write_json();
 }
@@ -190,12 +192,8 @@ void Results::start_fractures(const std::vector<Real>& written) {
 void Results::start_probes(const std::optional<EarlierResults>& earlier) {
   auto& system = model_.system();
   bool known = true;
-  if (!earlier) {
-    auto memory = system.memory();
-    memory.t = model_.time();
-    system.resume(model_.state(), memory);
+  if (!earlier)
     physics::for_each_physics([&](auto physics) { known = known && physics.has_initial_state(model_.scene()); });
-  }
   const auto outputs = system.outputs(model_.state());
   json now = reactions();
   add_fractures(now, outputs);
@@ -285,6 +283,9 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   add_fractures(step, outputs);
   add_error_bounds(step["fractures"], outputs);
   step.update(reactions());
+  step.update(tables_->of_state(outputs));
+  if (!tables_->units().empty()) json_["tables"] = tables_->units();
+  if (catalogue_) step["events"] = catalogue_->add(model_.mesh(), report.time, outputs);
   add_probes(step, outputs);
   if (estimator_ && (!goals_ || model_.scene().output.error_estimate || goals_->need(last))) {
     const auto scope = model_.timers().scope("error estimate");
@@ -340,6 +341,7 @@ void Results::follow_change() {
   n_changes_ = model_.n_changes();
   probes_.update_places();
   if (estimator_) estimator_.emplace(make_error_estimator(model_));
+  tables_.emplace(model_);
 }
 
 /// Adds a stage to results.json.
@@ -352,7 +354,7 @@ void Results::begin_stage(const std::string& name, Real time) {
                              {"fracture_faces", mesh.n_global_fracture_faces}});
 }
 
-/// Reactions of conditions, by boundary or region, and totals of the modules. Collective.
+/// Reactions of conditions, by boundary, region or fracture, and totals of the modules. Collective.
 json Results::reactions() {
   json all = {{"reactions", json::object()}, {"reaction_moments", json::object()}};  // present in any case
   const auto add = [](json& sum, Real value) { sum = value + (sum.is_null() ? 0 : sum.get<Real>()); };
@@ -361,12 +363,13 @@ json Results::reactions() {
   };
   const auto& mesh = model_.mesh();
   for (const auto& reaction : model_.system().reactions_of_step(model_.state())) {
-    const bool in_region = reaction.region >= 0;
-    const auto& [name, moments, regions, unit] = reaction.called;
-    units_.insert({{name, unit}, {moments, unit + "*m"}, {regions, unit}});
-    const auto& place = in_region ? mesh.region_names[reaction.region]
-                                  : model_.scene().boundary_conditions.at(reaction.condition).boundary;
-    if (const auto& called = in_region ? regions : name; called.empty())
+    const bool in_region = reaction.region >= 0, on_fracture = reaction.fracture >= 0;
+    const auto& [name, moments, regions, unit, fractures] = reaction.called;
+    units_.insert({{name, unit}, {moments, unit + "*m"}, {regions, unit}, {fractures, unit}});
+    const auto& place = in_region     ? mesh.region_names[reaction.region]
+                        : on_fracture ? mesh.fracture_names[reaction.fracture]
+                                      : model_.scene().boundary_conditions.at(reaction.condition).boundary;
+    if (const auto& called = in_region ? regions : on_fracture ? fractures : name; called.empty())
       continue;
     else if (reaction.force.size() == 1)
       add(all[called][place], reaction.force[0]);
@@ -453,8 +456,10 @@ void Results::write_json() {
   base::collectively(comm, [&] {
     if (comm.getRank() != 0 || singles_.empty()) return;
     io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
-    const auto events = events_csv(json_, singles_, model_.setting().start);
+    const auto events =
+        catalogue_ ? catalogue_csv(json_, singles_) : events_csv(json_, singles_, model_.setting().start);
     if (!events.empty()) io::write_file(directory_ + "/events.csv", events);
+    for (const auto& [name, text] : tables_csv(json_)) io::write_file(directory_ + '/' + name + ".csv", text);
   });
   n_written_ = static_cast<int>(json_["steps"].size());
   last_write_ = std::chrono::steady_clock::now();

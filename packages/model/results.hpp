@@ -5,7 +5,9 @@
 #include "estimate/goals.hpp"
 #include "io/vtu.hpp"
 #include "model/error_estimates.hpp"
+#include "model/event_catalogue.hpp"
 #include "model/probes.hpp"
+#include "model/state_tables.hpp"
 #include "model/steps.hpp"
 
 #include <nlohmann/json.hpp>
@@ -25,6 +27,7 @@ struct EarlierResults {
   nlohmann::json restarts = nlohmann::json::array();  ///< times of the restarts, s
   nlohmann::json probes = nlohmann::json::object();   ///< Results::probes_begun()
   nlohmann::json stages = nlohmann::json::array();    ///< Results::stages()
+  io::NamedVectors faces = {};                        ///< Results::faces()
 };
 
 /// Writer of the states of a model into a directory, step by step. All files are complete after every write. All
@@ -43,6 +46,8 @@ class Results {
   /// Stages that have begun, with their meshes.
   nlohmann::json stages() const { return json_.value("stages", nlohmann::json::array()); }
   int n_steps() const { return n_steps_; }
+  /// Data of fracture faces in events that may continue, for a checkpoint.
+  io::NamedVectors faces() const { return catalogue_ ? catalogue_->memory(model_.mesh()) : io::NamedVectors(); }
 
   /// Adds the state at the end of a step; `last` writes field files regardless of "every". Returns the numbers of open,
   /// sticking and slipping fracture faces.
@@ -83,7 +88,9 @@ class Results {
   std::optional<estimate::Goals> goals_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   Probes probes_;
-  int n_changes_;                               // changes of the model up to the last step
+  int n_changes_;  // changes of the model up to the last step
+  std::optional<EventCatalogue> catalogue_;
+  std::optional<StateTables> tables_;
   std::optional<io::SeriesFiles> series_;       // files of the probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
   std::map<std::string, std::string> units_;    // units of reactions()

@@ -18,6 +18,11 @@ void CheckpointTimes::describe(base::Section& s) {
   if (s.complete() && !steps && !minutes) s.fail("needs \"steps\", \"minutes\", or both");
 }
 
+void EventThreshold::describe(base::Section& s) {
+  s.entry(rate, "rate", "m/s", base::positive(),
+          "threshold of the rate of a face; a fracture with a faster face in a step is part of an event");
+}
+
 void Output::describe(base::Section& s) {
   s.entry(vtu, "vtu", "-", "switch for bulk.pvd and fractures.pvd, for ParaView");
   s.entry(every, "every", "-", base::at_least(1),
@@ -27,6 +32,7 @@ void Output::describe(base::Section& s) {
           "pass over all cells and, with fractures, a linear solve per step");
   s.choice(time_unit, "time unit", {"s", "min", "h", "d", "year"}, "unit of times in tables of probes and in pictures");
   s.section(checkpoints, "checkpoints", "checkpoints for --restart; another checkpoint follows the last step");
+  s.section(events, "events", "catalogue of fast events in events.csv, in place of events by the mean rate");
 }
 
 void MeshFile::Fracture::describe(base::Section& s) {
@@ -107,30 +113,30 @@ base::Draft<Scene> from_list(const Teuchos::ParameterList& list, const std::stri
   return draft;
 }
 
-/// Adds the entries of the other material type, omitted by effective(), to a material list. They are then reported as
-/// errors.
-void add_stray_entries(Teuchos::ParameterList& list, const Material& material) {
+/// Returns an error for each entry that is of the other type only. describe() declares the entries of its own type.
+std::vector<std::string> stray_entries(const std::string& place, Material material) {
   Material other = material, none;
   other.type = none.type = material.type == "joint" ? "elastic" : "joint";
-  const auto defaults = base::effective(none, "");
+  const auto own = base::effective(material, ""), defaults = base::effective(none, "");
+  std::vector<std::string> errors;
   for (const auto& named_entry : base::effective(other, "")) {
     const auto& [name, entry] = std::tie(named_entry.first, named_entry.second);
-    if (!defaults.isParameter(name) || base::value_text(defaults.getEntry(name)) != base::value_text(entry))
-      list.setEntry(name, entry);
+    const bool is_default =
+        defaults.isParameter(name) && base::value_text(defaults.getEntry(name)) == base::value_text(entry);
+    if (!own.isParameter(name) && !is_default)
+      errors.push_back(fmt::format("{} > \"{}\": unknown in a material of type \"{}\"", place, name, material.type));
   }
+  return errors;
 }
 
 }  // namespace
 
 base::Draft<Scene> prepared(const Scene& scene) {
-  Scene copy = scene;  // copy, because describe() could change it
-  auto list = base::effective(copy, "Sprekk");
+  auto draft = base::checked(scene, scene.origin, "Sprekk");
+  auto& errors = draft.report.errors;
   for (const auto& [name, material] : scene.materials)
-    add_stray_entries(list.sublist("Materials").sublist(name), material);
-  auto draft = from_list(list, scene.origin);
-  draft.value.keep(scene);
-  draft.value.solver.should_stop = scene.solver.should_stop;
-  draft.value.bisection = scene.bisection;
+    for (auto& error : stray_entries(fmt::format("{}: Sprekk > Materials > {}", scene.origin, name), material))
+      errors.push_back(std::move(error));
   return draft;
 }
 

@@ -51,12 +51,19 @@ struct CheckpointTimes {
   void describe(base::Section& section);
 };
 
+/// Catalogue of events by their rate, see EventCatalogue.
+struct EventThreshold {
+  Real rate = 1e-3;  ///< m/s
+  void describe(base::Section& section);
+};
+
 struct Output {
   bool vtu = true;
   int every = 1;  ///< steps
   bool error_estimate = false;
   std::string time_unit = "s";  ///< time unit of tables and files for ParaView
   std::optional<CheckpointTimes> checkpoints;
+  std::optional<EventThreshold> events;
   void describe(base::Section& section);
 };
 

@@ -74,6 +74,16 @@ void compare_error_estimate(Comparison& comparison, const std::string& place, co
                     fmt::format("is of triangles and tetrahedra where something flows; the mesh is of {}s", cell));
 }
 
+/// Reports a catalogue of events in a scene without events.
+void compare_events(Comparison& comparison, const Scene& scene) {
+  bool any = false;
+  physics::for_each_physics([&]<physics::HasEvents P>(P) { any = any || P::is_in(scene); });
+  if (const auto& fractures = comparison.names().fractures; fractures && fractures->empty())
+    comparison.fail("Output > \"events\"", "requires fractures, and the mesh has none");
+  else if (!any)
+    comparison.fail("Output > \"events\"", "requires deformable rock, and the rock of this scene is rigid");
+}
+
 void compare_accuracy(Comparison& comparison, const Scene& scene) {
   const auto& accuracy = *scene.accuracy;
   compare_error_estimate(comparison, "Accuracy", scene);
@@ -148,6 +158,7 @@ Comparison compared(const Draft& draft, MeshNames names) {
   comparison.compare();
   compare_scheme(comparison, draft.value.time.scheme);
   if (draft.value.output.error_estimate) compare_error_estimate(comparison, "Output > \"error estimate\"", draft.value);
+  if (draft.value.output.events) compare_events(comparison, draft.value);
   if (draft.value.accuracy && is_sound(draft, "Accuracy")) compare_accuracy(comparison, draft.value);
   return comparison;
 }

@@ -13,18 +13,6 @@ bool contains(const std::vector<Real>& increasing, Real t) {
   return std::binary_search(increasing.begin(), increasing.end(), t);
 }
 
-solve::StepControlOptions options_of(const Time& time, Real end, bool rates) {
-  const Real all = end - time.start;
-  const Real first = rates ? std::min<Real>(1e-3, time.tolerance.value_or(1e-2) / 100) : 0.03;  // of the total
-  const Real largest = time.largest_step.value_or(all);
-  return {.tolerance = time.tolerance,
-          .iterations = time.newton_iterations,
-          .first = std::min(time.first_step.value_or(first * all), largest),
-          .smallest = std::min(time.smallest_step.value_or(1e-9 * all), largest),
-          .largest = largest,
-          .max_growth = time.scheme == "BDF2" ? 2.28 : 3};  // steps may be 1.05 times longer to meet a time
-}
-
 }  // namespace
 
 Steps::Steps(Model& model) : model_(model), times_(model.scene().time.times()), stages_(staged_scenes(model.scene())) {
@@ -47,7 +35,7 @@ Steps::Steps(Model& model) : model_(model), times_(model.scene().time.times()), 
   auto stops = times_;
   stops.insert(stops.end(), knots_.begin(), knots_.end());
   std::sort(stops.begin(), stops.end());
-  control_.emplace(options_of(scene.time, end, model.system().has_rates()), stops);
+  control_.emplace(scene.time.control(model.system().has_rates(), model.system().evolves()), stops);
 }
 
 namespace {

@@ -10,8 +10,8 @@ namespace sprekk::multigrid {
 namespace {
 
 constexpr Real rounding = 1e-12;     // smaller blocks, relative to the diagonals, are zero
+constexpr Real least = 0.02;         // smallest strong coupling, relative to the geometric mean of the diagonals
 constexpr Real independent = 1e-10;  // smallest independent part of a motion, relative
-constexpr Real strong = 0.02;        // smallest strong coupling, relative to the geometric mean of the diagonals
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 constexpr Real steps = 3;  // reach of a node in distances of its nearest neighbour; the diagonal of a cube is 1.7
 
@@ -74,25 +74,33 @@ Neighbours coarsen(const Neighbours& fine, const Aggregates& aggregates) {
 
 }  // namespace
 
-std::vector<bool> weak_couplings(const NodeMatrix& A) {
+std::vector<bool> weak_couplings(const NodeMatrix& A, Real strong) {
   const auto& graph = A.graph;
   const auto diagonal = diagonal_sizes(A);
-  std::vector<bool> weak(graph.n_entries(), false);
+  std::vector<Real> size(graph.n_entries(), 0);                      // relative; 0: round-off, and the node itself
+  const View<Real*> strongest("strongest", graph.columns->n_all());  // [node] relative entry
   for (LocalIndex i = 0; i < graph.n_rows(); ++i) {
     const std::size_t begin = graph.start(i), n = graph.start(i + 1) - begin;
     for (std::size_t k = 0; k < n; ++k) {
       const LocalIndex j = graph.column(begin + k);
-      const Real size = std::sqrt(diagonal(i) * diagonal(j));
       Real maximum = 0;
-      for (int r = 0; r < A.height; ++r)
+      for (int r = 0; r < A.height && j != i; ++r)
         maximum = std::fmax(maximum, largest(&A.value(A.height * A.width * begin + (r * n + k) * A.width), A.width));
-      weak[begin + k] = j != i && maximum > rounding * size && maximum < strong * size;
+      const Real mean = std::sqrt(diagonal(i) * diagonal(j));
+      if (maximum > rounding * mean) size[begin + k] = maximum / mean;
+      strongest(i) = std::fmax(strongest(i), size[begin + k]);
     }
   }
+  graph.columns->exchange(strongest, 1);
+  std::vector<bool> weak(size.size(), false);
+  for (LocalIndex i = 0; i < graph.n_rows(); ++i)
+    for (std::size_t k = graph.start(i); k < graph.start(i + 1); ++k)
+      weak[k] = size[k] > 0 && size[k] < std::fmax(least, strong * std::fmin(strongest(i), strongest(graph.column(k))));
   return weak;
 }
 
-Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const RCP<const MultiVector>& places) {
+Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const RCP<const MultiVector>& places,
+               Real strong) {
   const auto& graph = A.graph;
   const int size = A.height;
   const auto n_rows = graph.n_rows();
@@ -115,7 +123,7 @@ Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes, const R
   nodes.nearest.assign(n_rows, infinite);
   const auto place = all_places(graph, nodes.place);
   std::vector<bool> prescribed(size);
-  if (modes.is_null()) nodes.weak = weak_couplings(A);
+  if (modes.is_null()) nodes.weak = weak_couplings(A, strong);
   for (LocalIndex i = 0; i < n_rows; ++i) {
     const std::size_t begin = graph.start(i), n = graph.start(i + 1) - begin;
     prescribed.assign(size, true);
@@ -279,8 +287,9 @@ std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& ag
         }
       const Real left = std::sqrt(dot(c, c));
       const bool own = left > independent * before;
-      motion[c * m + c] = own ? left : 0;
-      for (std::size_t row = 0; row < rows; ++row) q[c * rows + row] = own ? q[c * rows + row] / left : 0;
+      const Real unit = size * m == 1 ? 1 : left;
+      motion[c * m + c] = own ? unit : 0;
+      for (std::size_t row = 0; row < rows; ++row) q[c * rows + row] = own ? q[c * rows + row] / unit : 0;
     }
     for (int c = 0; c < m; ++c)
       for (std::size_t row = 0; row < rows; ++row) basis[at(row) + c] = q[c * rows + row];

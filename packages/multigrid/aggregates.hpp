@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "multigrid/node_matrix.hpp"
+#include "multigrid/options.hpp"
 
 namespace sprekk::multigrid {
 
@@ -35,15 +36,16 @@ struct Nodes {
   void add_smoothed(std::size_t n);
 };
 
-/// Returns the entries of the graph of a square matrix that are small relative to the diagonals of both nodes, but
-/// above round-off. Collective.
-std::vector<bool> weak_couplings(const NodeMatrix& A);
+/// Returns the weak entries of the graph of a square matrix, except round-off. Relative to the geometric mean of the
+/// diagonals of both nodes, entries are weak below 0.02, and below `strong` times the largest entry of either node.
+/// Collective.
+std::vector<bool> weak_couplings(const NodeMatrix& A, Real strong);
 
 /// Returns the nodes of a square matrix. Neighbours have blocks above round-off. `modes`: [unknown, mode], null for
-/// constants. `places`: [node, dim], m, null if unknown. Without modes, weak couplings are no neighbours: regions of
+/// constants. `places`: [node, dim], m, null if unknown. Without modes, weak_couplings() are no neighbours: regions of
 /// high and low conductivity remain separate (Vanek, Mandel and Brezina 1996). Collective.
 Nodes nodes_of(const NodeMatrix& A, const RCP<const MultiVector>& modes,
-               const RCP<const MultiVector>& places = Teuchos::null);
+               const RCP<const MultiVector>& places = Teuchos::null, Real strong = Options().strong);
 
 /// Sets the distances of the nearest neighbours on this rank, where positions are known. Stored data.
 void find_nearest(Nodes& nodes);
@@ -63,7 +65,8 @@ struct Aggregates {
 };
 Aggregates aggregate(const Nodes& nodes, std::size_t enough = 0);
 
-/// Returns an orthonormal basis of the motions on each aggregate, [node, unknown, mode]; zero for dependent motions.
+/// Returns an orthonormal basis of the motions on each aggregate, [node, unknown, mode]; zero for dependent motions. A
+/// single motion of single unknowns is its own basis.
 /// `coarse` receives the nodes formed by the aggregates, with the same motions in this basis. Neighbours on other ranks
 /// follow in coarsen_beyond(). Stored data.
 std::vector<Real> tentative_prolongator(const Nodes& nodes, const Aggregates& aggregates, Nodes& coarse);

@@ -1,6 +1,7 @@
 #include "multigrid/galerkin.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <tuple>
 
@@ -24,6 +25,21 @@ KOKKOS_FORCEINLINE_FUNCTION void add_block(const Real* X, std::size_t apart_X, c
     for (int c = 0; c < b; ++c) z.add(X[r * apart_X + c], y[c]);
     z.store(Z + r * apart_Z);
   }
+}
+
+/// Rounds x to multiples of one unit with an exact sum: the multiple next to `sum`. Changes the largest number by the
+/// rounding of all. The unit is 2^-22 times the power of two above the largest number.
+KOKKOS_INLINE_FUNCTION void round_with_sum(float* x, std::size_t n, Real sum) {
+  std::size_t largest = 0;
+  for (std::size_t k = 1; k < n; ++k)
+    if (std::fabs(x[k]) > std::fabs(x[largest])) largest = k;
+  if (x[largest] == 0) return;
+  const Real unit = std::exp2(std::ceil(std::log2(std::fabs(Real(x[largest])))) - 22);
+  for (std::size_t k = 0; k < n; ++k) {
+    x[k] = static_cast<float>(unit * std::round(x[k] / unit));
+    sum -= x[k];
+  }
+  x[largest] = static_cast<float>(x[largest] + unit * std::round(sum / unit));
 }
 
 constexpr std::size_t word = 64;
@@ -170,6 +186,7 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
           const std::size_t first = start(i), n = start(i + 1) - first, begin = graph.start(i),
                             n_a = graph.start(i + 1) - begin;
           if (n == 0) return;
+          Real sum = 0;  // of the row, for one unknown per node
           for (std::size_t s = 0; s < n; ++s) {
             Real sums[b][m] = {};
             for (std::size_t k = 0; k < n_a; ++k) {
@@ -187,7 +204,9 @@ void Galerkin::smooth(const NodeMatrix& A, const View<Real*>& inverse_diagonal) 
             }
             for (int r = 0; r < b; ++r)
               for (int q = 0; q < m; ++q) p(b * m * first + (r * n + s) * m + q) = static_cast<float>(sums[r][q]);
+            sum += sums[0][0];
           }
+          if (b * m == 1) round_with_sum(&p(first), n, sum);
         });
   });
 }

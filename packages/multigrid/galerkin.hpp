@@ -14,7 +14,9 @@ namespace sprekk::multigrid {
 /// - Graphs are made once. Positions in rows are found by a cursor, as columns are in order, except for ghosts. Stored
 ///   positions would require more memory and save almost no time.
 /// - Only a slice of A P exists at a time.
-/// - P and R are stored in single precision. R A P is the product of the stored matrices.
+/// - P and R are stored in single precision. R A P is the product of the stored matrices. With one unknown per node,
+///   entries of P are rounded so that the sums of its rows are exact. Otherwise constants in a part that is stiffer
+///   than its surroundings by more than 1e8 would have energy. R of nonsymmetric A is rounded entry by entry.
 /// - Coarse nodes are aggregates with numbers increasing with the ranks. Their unknowns are modes. R has the graph of
 ///   P^T.
 class Galerkin {

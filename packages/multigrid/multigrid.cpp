@@ -14,9 +14,6 @@ namespace {
 
 using Policy = Kokkos::RangePolicy<Execution>;
 
-/// Relative increase of the diagonal of the last matrix, which would be singular for floating parts of rock.
-constexpr Real raise = 1e-8;
-
 constexpr Real max_growth = 5;  // largest growth of the residual in a cycle
 constexpr int max_widenings = 4;
 constexpr int max_degree = 200, max_finest_degree = 24;
@@ -56,7 +53,7 @@ int degree_for(Real flatness, int degree) {
 
 GlobalIndex n_nodes(const NodeMatrix& A) { return A.graph.columns->owned()->getGlobalNumElements(); }
 
-void raise_diagonal(CrsMatrix& matrix) {
+void raise_diagonal(CrsMatrix& matrix, Real raise) {
   const auto local = matrix.getLocalMatrixHost();
   const auto rows = matrix.getRowMap()->getLocalMap(), columns = matrix.getColMap()->getLocalMap();
   for (LocalIndex row = 0, n = local.numRows(); row < n; ++row)
@@ -78,6 +75,7 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
   add_level(node_matrix(*matrix, size_), nullptr);
   shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
   levels_.front().degree = std::max(options.degree, options_.finest_degree);
+  Real strong = options.strong;
   while (n_nodes(levels_.back().A) * levels_.back().A.height > options.coarse_size) {
     const auto& A = levels_.back().A;
     if (!modes.is_null())
@@ -94,7 +92,8 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
       levels_.back().smoother->update(A);
       galerkin->update(A, levels_.back().smoother->damped_inverse_diagonal(), true);
       if (moved) moved->update(galerkin->coarse());
-      nodes = nodes_of(moved ? moved->matrix() : galerkin->coarse(), modes);
+      strong /= 2;
+      nodes = nodes_of(moved ? moved->matrix() : galerkin->coarse(), modes, Teuchos::null, strong);
       nodes.motion = std::move(coarse.motion);
       nodes.place = std::move(coarse.place);
       nodes.nearest = std::move(coarse.nearest);
@@ -178,7 +177,7 @@ void Multigrid::factor_last(bool symmetric) {
   const bool on_one = n_ranks_.back() == 1;
   if (n_nodes(A) == 0 || (on_one && A.graph.n_rows() == 0)) return;  // no coupled nodes: smoothing only
   const auto last = crs_matrix(on_one ? alone(A) : A);
-  raise_diagonal(*last);
+  raise_diagonal(*last, options_.raise);
   if (last_.is_null()) {
     last_matrix_ = last;
     last_ = rcp(new DirectInverse(last_matrix_, "the coarsest level of multigrid"));

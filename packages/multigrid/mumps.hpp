@@ -35,6 +35,10 @@ class Mumps {
   /// an empty string.
   std::string substitute(const Vector& b, Vector& x);
 
+  /// Return the floating-point operations of the last factor() and of a substitute(). Stored data, equal on all ranks.
+  Real operations() const { return operations_[0]; }
+  Real operations_of_substitution() const { return operations_[1]; }
+
   /// Returns all controls that differ from the defaults of MUMPS. Stored data.
   const Teuchos::ParameterList& parameters() const { return parameters_; }
 
@@ -45,6 +49,7 @@ class Mumps {
   void start(bool symmetric);
   void read_controls();
   void fill_values();
+  void count_operations();
   void release();
 
   Teuchos::ParameterList parameters_;
@@ -55,7 +60,8 @@ class Mumps {
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
   bool ready_ = false, analysed_ = false, symmetric_ = false;
-  bool gathers_ = false;  // rank 0 receives the whole matrix
+  bool gathers_ = false;         // rank 0 receives the whole matrix
+  Real operations_[2] = {0, 0};  // of factor() and substitute()
   std::string failure_ = "the matrix was not set up";
   RCP<const CrsMatrix> matrix_;
   std::vector<int> counts_, starts_;    // [rank] number and start of values

@@ -125,7 +125,7 @@ void Comparison::compare(const mesh::GlobalMesh& mesh) {
 
 std::vector<assembly::DirichletCondition> dirichlet_conditions(
     const std::map<std::string, BoundaryCondition>& conditions, const std::map<std::string, Region>& regions,
-    const MeshNames& names, const std::string& field) {
+    const MeshNames& names, const std::string& field, const std::map<std::string, Fracture>& fractures) {
   std::vector<assembly::DirichletCondition> all;
   const auto add = [&](assembly::DirichletCondition condition, const std::vector<Prescribed>& prescribed) {
     for (const auto& one : prescribed) {
@@ -159,6 +159,14 @@ std::vector<assembly::DirichletCondition> dirichlet_conditions(
          .values = {},
          .region = base::index_of(*names.regions, name)},
         one.prescribed());
+  for (const auto& [name, one] : fractures)
+    for (const auto& prescribed : one.prescribed())
+      add({.name = fmt::format("Fractures > {} > {}", name, prescribed.section),
+           .field = "",
+           .boundary = -1,
+           .values = {},
+           .fracture = base::index_of(*names.fractures, name)},
+          {prescribed});
   return all;
 }
 

@@ -99,10 +99,10 @@ class Comparison {
 };
 
 /// Conditions that prescribe unknowns of `field` ("": all fields) on a mesh with all names. Conditions of boundaries
-/// precede those of regions.
+/// precede those of regions, and these those of fractures.
 std::vector<assembly::DirichletCondition> dirichlet_conditions(
     const std::map<std::string, BoundaryCondition>& conditions, const std::map<std::string, Region>& regions,
-    const MeshNames& names, const std::string& field = "");
+    const MeshNames& names, const std::string& field = "", const std::map<std::string, Fracture>& fractures = {});
 
 /// Entries of a boundary condition that define a FluxCondition: a flux, or a coefficient and the exterior value.
 struct FluxEntries {

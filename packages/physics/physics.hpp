@@ -16,6 +16,9 @@
 namespace sprekk::assembly {
 class System;
 }
+namespace sprekk::estimate {
+class TableOfStates;
+}
 
 namespace sprekk::physics {
 
@@ -45,6 +48,7 @@ struct Prescribed {
   std::string field;
   std::vector<base::Expression> values;
   std::vector<Real> lower_corner = {}, upper_corner = {};  ///< only nodes in this box; empty: all nodes
+  std::string section = "";                                ///< of fractures: section within that of the fracture
 };
 
 /// Facets (see mesh::Facets) with unknowns: none, those of fractures, all.
@@ -151,6 +155,22 @@ concept HasWarnings = requires {
   typename P::Warnings;
 };
 
+/// Tables: table of quantities at points of fractures, see estimate::StateTable.
+struct TablesFunctions {
+  /// Name of the entry in results.json and of the CSV file; spaces become underscores
+  std::string (*name)();
+  /// Table that the scene requests, which refers to the setting and the system; null: none. Collective.
+  std::unique_ptr<estimate::TableOfStates> (*table)(const Setting&, assembly::System&);
+};
+template <class Group>
+concept IsTables = requires {
+  TablesFunctions{&Group::name, &Group::table};
+};
+template <class P>
+concept HasTables = requires {
+  typename P::Tables;
+};
+
 /// Solvability: existence and uniqueness of solutions.
 struct SolvabilityFunctions {
   /// Reasons against them. `oscillates`: contact states of faces alternate between iterates of Newton's method.
@@ -166,6 +186,25 @@ concept HasSolvability = requires {
   typename P::Solvability;
 };
 
+/// Outputs from which a catalogue of events is computed, see model/event_catalogue.hpp. The fracture faces have a
+/// vector in their frame that changes during an event, the conjugate force, and a density whose integral has
+/// assembly::Events.
+struct EventSource {
+  std::string path, force, density;  ///< names of outputs; the components along the face count
+  std::string drop, drop_unit;       ///< name of the decrease of the force along the path
+};
+struct EventsFunctions {
+  EventSource (*source)();
+};
+template <class Group>
+concept IsEvents = requires {
+  EventsFunctions{&Group::source};
+};
+template <class P>
+concept HasEvents = requires {
+  typename P::Events;
+};
+
 /// Compiles only if each group of a physics has all of its functions, with these signatures.
 template <class P>
 constexpr bool has_complete_groups() {
@@ -174,6 +213,8 @@ constexpr bool has_complete_groups() {
   if constexpr (HasEstimate<P>) static_assert(IsEstimate<typename P::Estimate>);
   if constexpr (HasChange<P>) static_assert(IsChange<typename P::Change>);
   if constexpr (HasWarnings<P>) static_assert(IsWarnings<typename P::Warnings>);
+  if constexpr (HasEvents<P>) static_assert(IsEvents<typename P::Events>);
+  if constexpr (HasTables<P>) static_assert(IsTables<typename P::Tables>);
   if constexpr (HasSolvability<P>) static_assert(IsSolvability<typename P::Solvability>);
   return true;
 }
@@ -192,8 +233,9 @@ struct Physics {
   struct Part {
     void describe(base::Section&) {}
     void check(base::Section&) const {}
-    bool is_given() const { return false; }                    ///< regions, boundary conditions: an entry is given
-    std::vector<Prescribed> prescribed() const { return {}; }  ///< the same: fields with prescribed unknowns
+    bool is_given() const { return false; }  ///< regions, boundary conditions: an entry is given
+    /// The same, and fractures, with a box for each field: fields with prescribed unknowns.
+    std::vector<Prescribed> prescribed() const { return {}; }
   };
   using Rock = Part<0>;
   using Joint = Part<1>;

@@ -44,10 +44,10 @@ void Region::describe(base::Section& s) {
 
 void Fracture::describe(base::Section& s) {
   const std::string meaning = "name of a joint material of this scene or of the library";
-  if (material.empty())
-    s.required(material, "material", "-", meaning + "; the \"material\" of \"Fractures\" replaces a missing one");
+  if (material.empty() && !s.documents())
+    s.required(material, "material", "-", meaning);
   else
-    s.entry(material, "material", "-", meaning);
+    s.entry(material, "material", "-", meaning + "; without it, the \"material\" of \"Fractures\" must be given");
   describe_parts(s);
   if (s.complete()) check_parts(s);
 }

@@ -158,13 +158,17 @@ struct Scene : OfAll<detail::Sections> {
   std::map<int, Material> own_joints;  ///< [single fracture] with individual properties; see own_joints()
   std::map<std::string, BoundaryCondition> boundary_conditions;
   std::map<std::string, Probe> probes;
+  bool is_continued = false;  ///< not an entry: the scene changes a live model, which began with another one
 
   /// Declares tables and named expressions, which all later entries may call.
   void describe_expressions(base::Section& section);
   /// Declares all other sections. Adds the library materials that the scene names.
   void describe_physics(base::Section& section);
   /// Copies from another scene the data that are not entries.
-  void keep(const Scene& other) { keep_parts(other); }
+  void keep(const Scene& other) {
+    is_continued = other.is_continued;
+    keep_parts(other);
+  }
   const Material& material_of(const std::string& region) const;
   std::vector<std::string> excavated() const;  ///< names of the excavated regions
 };

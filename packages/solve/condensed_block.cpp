@@ -42,18 +42,18 @@ void start_from_bulk(const CondensedBlock& condensed) {
   check_found(n_missing);
 }
 
-View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_flags) {
+View<LocalIndex*> find_constrained(const CondensedBlock& condensed, const Vector& row_flags) {
   const auto numbers = condensed.matrix->numbers();
   const auto row_flag = read_values(row_flags);
   const auto column_flag = condensed.constrained;
-  const View<char*> held("held", numbers.n_rows());
+  const View<char*> constrained("constrained", numbers.n_rows());
   Kokkos::parallel_for(
-      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex row) {
+      "constrained rows", Policy(0, constrained.extent(0)), KOKKOS_LAMBDA(LocalIndex row) {
         bool here = row_flag(row) != 0;
         numbers.for_row(row, [&](LocalIndex column, std::size_t) { here = here || column_flag(column) != 0; });
-        held(row) = here;
+        constrained(row) = here;
       });
-  return numbers_of(held);
+  return numbers_of(constrained);
 }
 
 void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& groups, int r, int n_remaining) {
@@ -90,14 +90,15 @@ void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& gro
   condensed.rows = condensed.saved->rows();
 }
 
-void keep_held(CondensedBlock& condensed, const Vector& row_flags, const RCP<const Vector>& diagonal) {
+void keep_constrained(CondensedBlock& condensed, const Vector& row_flags, const RCP<const Vector>& diagonal) {
   if (!condensed.saved) return;
   const auto numbers = condensed.matrix->numbers();
   const View<char*> changes("changes", numbers.n_rows());
   const Policy rows(0, changes.extent(0));
-  const auto held = condensed.held;
+  const auto constrained = condensed.constrained_rows;
   Kokkos::parallel_for(
-      "held rows", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex i) { changes(held(i)) = 1; });
+      "constrained rows", Policy(0, constrained.extent(0)),
+      KOKKOS_LAMBDA(LocalIndex i) { changes(constrained(i)) = 1; });
   const Vector none(row_flags.getMap());
   const auto added = read_values(diagonal.is_null() ? none : *diagonal);
   Kokkos::parallel_for(
@@ -109,7 +110,7 @@ void keep_held(CondensedBlock& condensed, const Vector& row_flags, const RCP<con
   const auto row_flag = read_values(row_flags);
   const auto column_flag = condensed.constrained;
   Kokkos::parallel_for(
-      "held numbers", rows, KOKKOS_LAMBDA(LocalIndex row) {
+      "constrained numbers", rows, KOKKOS_LAMBDA(LocalIndex row) {
         if (changes(row) == 0) return;
         const std::size_t begin = numbers.row(row).begin;
         const LocalIndex raised = added(row) != 0 ? own_column(row) : -1;
@@ -126,10 +127,10 @@ void constrain(const CondensedBlock& condensed, const Vector& row_flags, bool di
   const OwnColumn own_column(*condensed.matrix);
   const auto row_flag = read_values(row_flags);
   const auto column_flag = condensed.constrained;
-  const auto held = condensed.held;
+  const auto constrained = condensed.constrained_rows;
   Kokkos::parallel_for(
-      "constrain", Policy(0, held.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
-        const LocalIndex row = held(i), own = diagonal ? own_column(row) : -1;
+      "constrain", Policy(0, constrained.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
+        const LocalIndex row = constrained(i), own = diagonal ? own_column(row) : -1;
         numbers.for_row(row, [&](LocalIndex column, std::size_t k) {
           if (row_flag(row) == 0 && column_flag(column) == 0) return;
           const Real size = base::fabs(numbers.value(k));

@@ -70,13 +70,13 @@ inline void check_found(int n_missing) {
 void start_from_bulk(const CondensedBlock& condensed);
 
 /// Returns the rows of prescribed unknowns, row_flags [owned row] != 0, and rows with such a column. Local.
-View<LocalIndex*> find_held(const CondensedBlock& condensed, const Vector& row_flags);
+View<LocalIndex*> find_constrained(const CondensedBlock& condensed, const Vector& row_flags);
 
 /// If J_aa stores A_aa of the r-th remaining block, saves the values that the local groups will change. Local.
 void keep_condensed(CondensedBlock& condensed, const std::vector<GroupPlan>& groups, int r, int n_remaining);
 
 /// Saves the values that constraints or a diagonal [owned row] will change, likewise. The diagonal may be null. Local.
-void keep_held(CondensedBlock& condensed, const Vector& row_flags, const RCP<const Vector>& diagonal);
+void keep_constrained(CondensedBlock& condensed, const Vector& row_flags, const RCP<const Vector>& diagonal);
 
 /// Zeroes rows and columns of the flagged unknowns. If `diagonal`, the diagonal keeps its absolute value, or 1 if it is
 /// zero. Local.

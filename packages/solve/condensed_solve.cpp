@@ -20,7 +20,11 @@ CondensedSolve::CondensedSolve(BlockProblem& problem, const LinearSolverOptions&
       options_(options),
       elimination_(problem),
       whole_(problem, elimination_, numbers_up_to(elimination_.remaining().size()), options),
-      forcing_(options.forcing && !solver().solver->reads_matrix()) {}
+      forcing_(options.forcing && !solver().solver->reads_matrix()) {
+  if (!solver().solver->reads_matrix() || options.reproducible.value_or(false)) return;
+  if (auto* change = elimination_.watch_change(problem))
+    updated_ = std::make_unique<UpdatedFactors>(problem, *change, elimination_.condensed(0, 0));
+}
 
 /// Returns the blocks of a part as indices of LocalElimination::remaining().
 std::vector<int> CondensedSolve::blocks_of(Part part) const {
@@ -31,37 +35,59 @@ std::vector<int> CondensedSolve::blocks_of(Part part) const {
   return blocks;
 }
 
-bool CondensedSolve::eliminate() {
+LocalElimination::Status CondensedSolve::eliminate() {
   const auto scope = timers_->scope("local elimination");
   auto status = elimination_.update(problem_);
-  const bool changed = status.changed || !failure_.empty();
-  failure_ = std::move(status.failure);
-  return changed;
+  status.changed = status.changed || !failure_.empty();
+  failure_ = status.failure;
+  return status;
 }
 
 void CondensedSolve::update() {
-  const bool changed = eliminate(), symmetric = problem_.symmetric();
-  if (!failure_.empty() || !(changed || outdated_ || symmetric != symmetric_)) return;
+  const auto status = eliminate();
+  if (!failure_.empty() || !(status.changed || outdated_ || problem_.symmetric() != symmetric_)) return;
+  if (updated_ && status.by_groups && !outdated_) {
+    const auto scope = timers_->scope("update of factors");
+    follows_ = updated_->follow();
+    if (follows_) return;
+  }
+  set_up();
+}
+
+void CondensedSolve::set_up() {
   const auto scope = timers_->scope("set-up of linear solver");
-  symmetric_ = symmetric;
-  outdated_ = false;
+  symmetric_ = problem_.symmetric();
+  outdated_ = follows_ = false;
   failure_ = whole_.setup(symmetric_);
+  if (updated_ && failure_.empty()) updated_->restart(*solver().solver);
   ++n_setups_;
 }
 
-LinearReport CondensedSolve::solve_by(RemainingSolve& solver, const BlockVector& b, BlockVector& dx, Real tolerance) {
+LinearReport CondensedSolve::solve_by(const Solve& solve, const BlockVector& b, BlockVector& dx) {
   LinearReport report;
   report.reason = failure_;
   if (!failure_.empty()) return report;
   const auto scope = timers_->scope("linear solve");
   BlockVector y;
-  report = solver.solve(elimination_.reduce(b), y, tolerance);
+  report = solve(elimination_.reduce(b), y);
   if (report.converged) elimination_.expand(b, y, dx);
   return report;
 }
 
+/// Solves with updated factors or, if they are not accurate, with new ones.
+LinearReport CondensedSolve::solve_whole(const BlockVector& c, BlockVector& y, Real tolerance) {
+  if (follows_) {
+    y = {rcp(new Vector(c.front()->getMap()))};
+    const auto report = updated_->solve(*c.front(), *y.front());
+    if (report.converged) return report;
+    updated_->give_up();
+    set_up();
+  }
+  return whole_.solve(c, y, tolerance);
+}
+
 LinearReport CondensedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
-  return solve_by(whole_, b, dx, tolerance);
+  return solve_by([&](const BlockVector& c, BlockVector& y) { return solve_whole(c, y, tolerance); }, b, dx);
 }
 
 LinearReport CondensedSolve::solve_part(Part part, const BlockVector& b, BlockVector& dx, Real tolerance) {
@@ -72,7 +98,7 @@ LinearReport CondensedSolve::solve_part(Part part, const BlockVector& b, BlockVe
     const auto scope = timers_->scope("set-up of linear solver");
     failure_ = solver.setup(part == Part::others && problem_.symmetric_blocks());
   }
-  return solve_by(solver, b, dx, tolerance);
+  return solve_by([&](const BlockVector& c, BlockVector& y) { return solver.solve(c, y, tolerance); }, b, dx);
 }
 
 }  // namespace sprekk::solve

@@ -2,16 +2,19 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/timer.hpp"
 #include "solve/remaining_solve.hpp"
+#include "solve/updated_factors.hpp"
 
 namespace sprekk::solve {
 
 /// Linear solver with data saved between solves: positions, factors or the hierarchy. These are renewed only if values
-/// have changed. Remaining blocks are solved together. All members are collective unless they return stored data.
+/// have changed. If only local groups have changed them, factors may be updated instead, see UpdatedFactors. Remaining
+/// blocks are solved together. All members are collective unless they return stored data.
 class CondensedSolve {
  public:
   CondensedSolve(BlockProblem& problem, const LinearSolverOptions& options,
@@ -39,15 +42,20 @@ class CondensedSolve {
 
  private:
   std::vector<int> blocks_of(Part part) const;
-  bool eliminate();
-  LinearReport solve_by(RemainingSolve& solver, const BlockVector& b, BlockVector& dx, Real tolerance);
+  LocalElimination::Status eliminate();
+  void set_up();
+  LinearReport solve_whole(const BlockVector& c, BlockVector& y, Real tolerance);
+  using Solve = std::function<LinearReport(const BlockVector& c, BlockVector& y)>;
+  LinearReport solve_by(const Solve& solve, const BlockVector& b, BlockVector& dx);
 
   BlockProblem& problem_;
   RCP<base::Timers> timers_;
   LinearSolverOptions options_;
   LocalElimination elimination_;
   RemainingSolve whole_;
-  std::map<Part, RemainingSolve> parts_;  // empty before their first use
+  std::unique_ptr<UpdatedFactors> updated_;  // null: the solver is iterative, or see LocalElimination::watch_change()
+  bool follows_ = false;                     // the present J is that of updated_, not of the last set-up
+  std::map<Part, RemainingSolve> parts_;     // empty before their first use
   bool forcing_;
   bool symmetric_ = false;
   bool outdated_ = false;  // the elimination has changed since the last set-up of all blocks

@@ -42,6 +42,7 @@ class DirectSolver : public LinearSolver {
     matrix_ = system.matrix;
     balances_ = std::any_of(system.diagonal.begin(), system.diagonal.end(),
                             [](const auto& part) { return part.block.balance; });
+    factors_ = rcp(new Factors(mumps_, matrix_->getRowMap()));
     return failure_ = mumps_.factor(matrix_, system.symmetric);
   }
 
@@ -79,6 +80,8 @@ class DirectSolver : public LinearSolver {
   }
 
   const Teuchos::ParameterList& parameters() const override { return mumps_.parameters(); }
+  RCP<const fields::Operator> preconditioner() const override { return factors_; }
+  Work work() const override { return {mumps_.operations(), mumps_.operations_of_substitution()}; }
 
  private:
   /// Returns the relative residual caused by round-off: in each row, round-off of the diagonal times the unknown. It
@@ -99,8 +102,7 @@ class DirectSolver : public LinearSolver {
     const Real before = relative_residual(*matrix_, b, x, r);
     if (!std::isfinite(before)) return;
     try {
-      const auto factors = rcp(new Factors(mumps_, x.getMap()));
-      report.iterations += krylov(matrix_, factors, krylov_defaults(), "Block GMRES", r, dx,
+      report.iterations += krylov(matrix_, factors_, krylov_defaults(), "Block GMRES", r, dx,
                                   std::min(0.1 * acceptable / before, 0.1), max_corrections)
                                .iterations;
     } catch (const std::exception&) {
@@ -117,6 +119,7 @@ class DirectSolver : public LinearSolver {
   static constexpr Real max_noise = 1e-2, max_noise_of_rates = 0.5;
   multigrid::Mumps mumps_;
   RCP<const CrsMatrix> matrix_;
+  RCP<const Factors> factors_;
   bool balances_ = false;
   std::string failure_ = "the matrix was not set up";
 };

@@ -55,8 +55,6 @@ class Planner {
     check_groups_do_not_couple();
     for (const auto& group : groups) plan_group(group);
     plan_condensed(problem_, plan_);
-    for (auto& group : plan_.groups)
-      for (auto& response : group.response) response.column = {};
     return std::move(plan_);
   }
 

@@ -41,7 +41,7 @@ struct Response {
 
   std::vector<Scatter> fill;        ///< A_zb -> values of owned slots
   View<std::size_t*> column_start;  ///< [slot + 1] first column of a slot; the first value is at m times this number
-  View<GlobalIndex*> column;        ///< [all columns] global unknown of b; only during planning
+  View<GlobalIndex*> column;        ///< [all columns] global unknown of b; empty after the first update
   View<Real*> value;                ///< only during an update
 };
 
@@ -81,7 +81,7 @@ struct CondensedBlock {
   View<LocalIndex*> bulk_column;             ///< [column of A_ab] column in J_ab
   std::shared_ptr<fields::SavedRows> saved;  ///< saved values of A_ab if J_ab stores it, or null
   View<LocalIndex*> rows;                    ///< if J_ab stores A_ab: rows that may differ from it; else all rows
-  View<LocalIndex*> held;                    ///< rows of prescribed unknowns, and rows with such a column
+  View<LocalIndex*> constrained_rows;        ///< rows of prescribed unknowns, and rows with such a column
   View<char*> constrained;                   ///< [column] 1 for prescribed unknowns
 };
 

@@ -6,6 +6,9 @@
 #include <cmath>
 
 #include "multigrid/patched_smoother.hpp"
+#include "solve/flow_factors.hpp"
+#include "solve/minimal_residual.hpp"
+#include "solve/split_interpolation.hpp"
 
 namespace sprekk::solve {
 namespace {
@@ -14,6 +17,9 @@ using fields::Map;
 using fields::MultiVector;
 using fields::Operator;
 using Teuchos::ParameterList;
+
+/// Steps of minimal residual on the coarse space of an advected block. Cycles of multigrid may be inaccurate in a flow.
+constexpr int n_coarse_steps = 2;
 
 /// Returns P^T A P. Its graph omits zeros of A. Collective.
 RCP<CrsMatrix> coarse_product(const RCP<CrsMatrix>& A, const RCP<const CrsMatrix>& P) {
@@ -154,6 +160,25 @@ class ChebyshevSmoother : public LevelSmoother {
   multigrid::PatchedSmoother smoother_;
 };
 
+/// Incomplete factors in the order of a flow, equal before and after the coarse correction.
+class FlowSmoother : public LevelSmoother {
+ public:
+  void update(const WholeMatrix& A) override {
+    A_ = A.matrix();
+    factors_ = std::make_unique<FlowFactors>(*A.crs());
+  }
+  void before(const MultiVector& b, MultiVector& x) const override { factors_->apply(b, x, Teuchos::NO_TRANS, 1, 0); }
+  void after(const MultiVector& b, MultiVector& x) const override {
+    MultiVector r(b, Teuchos::Copy);
+    A_->apply(x, r, Teuchos::NO_TRANS, -1, 1);
+    factors_->apply(r, x, Teuchos::NO_TRANS, 1, 1);
+  }
+
+ private:
+  RCP<const Matrix> A_;
+  std::unique_ptr<FlowFactors> factors_;
+};
+
 class Cycle : public Operator {
  public:
   Cycle(const LinearSystem& system, std::shared_ptr<const LevelSmoother> smoother, RCP<const CrsMatrix> P,
@@ -208,12 +233,14 @@ class Cycle : public Operator {
 
 bool needs_fine_level(const BlockOptions& options, const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
-  return !first.interpolation.is_null() || (blocks.size() > 1 && takes_muelu(options, first));
+  return !first.interpolation.is_null() || takes_flow_order(options, first) ||
+         (blocks.size() > 1 && takes_muelu(options, first));
 }
 
 FineLevel::FineLevel(const BlockOptions& options, const std::vector<Block>& blocks)
     : Preconditioner("fine level", blocks.front().name),
-      degree_(options.multigrid.value_or(MultigridOptions()).degree),
+      degree_(options.multigrid.value_or(MultigridOptions()).of_corners(dimension(blocks.front())).degree),
+      in_flow_(takes_flow_order(options, blocks.front())),
       is_scalar_(blocks.size() == 1 && blocks.front().n_components == 1),
       coarse_(make_multigrid(options, {blocks.front()})) {
   for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
@@ -221,6 +248,7 @@ FineLevel::FineLevel(const BlockOptions& options, const std::vector<Block>& bloc
 
 void FineLevel::describe(ParameterList& blocks) const {
   coarse_->describe(blocks);
+  if (in_flow_) blocks.sublist(block()) = ParameterList(block()).set("type", "auto");
   for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
 }
 
@@ -232,8 +260,13 @@ std::vector<SolverCost> FineLevel::costs() const {
 
 void FineLevel::set_up_coarse(const LinearSystem& system) {
   const auto& first = system.diagonal.front();
-  P_ = first.block.interpolation;
-  if (is_scalar_) P_ = without_prescribed(*first.matrix->crs(), *P_);
+  if (interpolation_.is_null()) interpolation_ = first.block.interpolation;
+  P_ = interpolation_;
+  if (is_scalar_ && !P_.is_null()) {
+    P_ = without_prescribed(*first.matrix->crs(), *P_);
+    if (product_.is_null() && !in_flow_)
+      if (const auto split = split_interpolation(*first.matrix->crs(), P_); split != P_) interpolation_ = P_ = split;
+  }
   const auto P = P_;
   Bulk bulk;
   if (first.bulk)
@@ -241,7 +274,7 @@ void FineLevel::set_up_coarse(const LinearSystem& system) {
   RCP<const Matrix> matrix = first.matrix;
   if (!P.is_null()) {
     const auto A = first.matrix->crs();
-    if (product_.is_null()) product_ = fields::wrapped(coarse_matrix(*A, first.block.interpolation));
+    if (product_.is_null()) product_ = fields::wrapped(coarse_matrix(*A, interpolation_));
     fill_coarse(A, P, *product_->crs());
     if (is_scalar_) fill_empty_rows(*product_->crs());
     matrix = product_;
@@ -264,13 +297,18 @@ bool FineLevel::renew(const LinearSystem& system) {
   constexpr int max_widenings = 4;
   const auto& first = system.diagonal.front();
   matrix_.update(system);
-  if (!smoother_ && is_scalar_)
+  if (!smoother_ && in_flow_)
+    smoother_ = std::make_shared<FlowSmoother>();
+  else if (!smoother_ && is_scalar_)
     smoother_ = std::make_shared<ChebyshevSmoother>(matrix_, first.block.patches, degree_);
   else if (!smoother_)
     smoother_ = std::make_shared<GaussSeidelSmoother>();
   smoother_->update(matrix_);
-  cycle_ = rcp(new Cycle(system, smoother_, P_, coarse_->inverse()));
-  for (int widenings = 0; first.careful && !first.symmetric && widenings < max_widenings; ++widenings)
+  RCP<const Operator> coarse = coarse_->inverse();
+  if (in_flow_) coarse = minimal_residual(P_.is_null() ? first.matrix : product_, coarse, n_coarse_steps);
+  cycle_ = rcp(new Cycle(system, smoother_, P_, coarse));
+  const bool tries = first.careful && !first.symmetric && !in_flow_;
+  for (int widenings = 0; tries && widenings < max_widenings; ++widenings)
     if (growth(*matrix_.matrix(), *cycle_) <= max_growth || !smoother_->widen()) break;
   return true;
 }

@@ -1,4 +1,5 @@
-// Level above multigrid for blocks with a first coarse space: node fields of order 2, and fields on facets.
+// Level above multigrid for blocks with a first coarse space or a smoother of their own: node fields of order 2, fields
+// on facets, and quantities that a flow carries.
 #pragma once
 
 #include "solve/preconditioner.hpp"
@@ -6,7 +7,7 @@
 namespace sprekk::solve {
 
 /// Returns whether multigrid needs a finer level for these blocks, of which all except the first enrich the first.
-/// Reasons: an interpolation, or enriching functions with MueLu.
+/// Reasons: an interpolation, enriching functions with MueLu, or a flow.
 bool needs_fine_level(const BlockOptions& options, const std::vector<Block>& blocks);
 
 class LevelSmoother;
@@ -15,12 +16,15 @@ class LevelSmoother;
 ///   x = S b,  x += P K P^T (b - A x),  x += S^T (b - A x).
 /// K is multigrid on P^T A P. P is the interpolation of the first block, zero in enriching blocks. S is a symmetric
 /// Gauss-Seidel sweep. For a single block with one unknown per entity, it is multigrid::PatchedSmoother with the
-/// patches of the block.
+/// patches of the block. If takes_flow_order(), S and S^T are FlowFactors, K is two steps of MinimalResidual with this
+/// multigrid, and the cycle is not symmetric.
 class FineLevel : public Preconditioner {
  public:
   FineLevel(const BlockOptions& options, const std::vector<Block>& blocks);
 
-  bool has_cycles() const override { return coarse_->has_cycles(); }
+  bool is_symmetric() const override { return !in_flow_; }
+  bool can_be_reused() const override { return !in_flow_; }
+  bool has_cycles() const override { return !in_flow_ && coarse_->has_cycles(); }
   int coarse_size() const override { return is_scalar_ ? multigrid::Options().coarse_size : coarse_->coarse_size(); }
   std::vector<SolverCost> costs() const override;
   void describe(Teuchos::ParameterList& blocks) const override;
@@ -33,10 +37,12 @@ class FineLevel : public Preconditioner {
 
   std::vector<std::string> enriching_;  // names of the enriching blocks
   int degree_;                          // of Chebyshev's polynomial
+  bool in_flow_;                        // advected: incomplete factors in the order of the flow
   bool is_scalar_;                      // a single block with one unknown per entity
   std::unique_ptr<Preconditioner> coarse_;
-  RCP<const CrsMatrix> P_;     // interpolation; null: none
-  RCP<const Matrix> product_;  // P^T A P
+  RCP<const CrsMatrix> interpolation_;  // that of the first block, for scalars of split_interpolation(); null: none
+  RCP<const CrsMatrix> P_;              // the same with zero rows for prescribed unknowns
+  RCP<const Matrix> product_;           // P^T A P
   WholeMatrix matrix_;
   std::shared_ptr<LevelSmoother> smoother_;
   RCP<const fields::Operator> cycle_;

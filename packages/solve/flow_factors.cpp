@@ -9,13 +9,25 @@ namespace {
 
 constexpr Real min_pivot = 1e-8;  // relative to the diagonal
 
-}  // namespace
+using Entries = std::vector<std::pair<LocalIndex, Real>>;  // columns and values of a row
 
-FlowFactors::FlowFactors(const fields::CrsMatrix& A) : map_(A.getRowMap()) {
+void append(Entries& row, LocalRows& rows) {
+  std::sort(row.begin(), row.end());
+  for (const auto& [column, value] : row) {
+    rows.column.push_back(column);
+    rows.value.push_back(value);
+  }
+  rows.start.push_back(rows.column.size());
+}
+
+LocalRows empty_rows() { return {.start = {0}, .column = {}, .value = {}}; }
+
+/// Returns the couplings within this rank, with a diagonal in each row.
+LocalRows rows_of(const fields::CrsMatrix& A) {
   const auto rows = A.getRowMap()->getLocalMap(), columns = A.getColMap()->getLocalMap();
   const auto local = A.getLocalMatrixHost();
-  std::vector<std::pair<LocalIndex, Real>> row;
-  rows_ = {.start = {0}, .column = {}, .value = {}};
+  auto result = empty_rows();
+  Entries row;
   for (LocalIndex i = 0; i < local.numRows(); ++i) {
     row.clear();
     for (auto k = local.graph.row_map(i); k < local.graph.row_map(i + 1); ++k)
@@ -23,41 +35,54 @@ FlowFactors::FlowFactors(const fields::CrsMatrix& A) : map_(A.getRowMap()) {
         row.emplace_back(j, local.values(k));
     if (std::none_of(row.begin(), row.end(), [i](const auto& entry) { return entry.first == i; }))
       row.emplace_back(i, 0);
-    std::sort(row.begin(), row.end());
-    for (const auto& [j, value] : row) {
-      rows_.column.push_back(j);
-      rows_.value.push_back(value);
-    }
-    rows_.start.push_back(rows_.column.size());
+    append(row, result);
   }
-  order_ = flow_order(rows_);
+  return result;
 }
 
-/// Copies the rows to the factors, with positions as numbers.
-void FlowFactors::reorder() {
-  const LocalIndex n = rows_.n();
-  std::vector<LocalIndex> position(n);
-  for (LocalIndex p = 0; p < n; ++p) position[order_.row[p]] = p;
-  factors_ = {.start = {0}, .column = {}, .value = {}};
-  factors_.column.reserve(rows_.column.size());
-  factors_.value.reserve(rows_.column.size());
-  std::vector<std::pair<LocalIndex, Real>> row;
-  for (LocalIndex p = 0; p < n; ++p) {
-    const LocalIndex i = order_.row[p];
+/// Returns the rows in this order, with positions as numbers.
+LocalRows reordered(const LocalRows& A, const std::vector<LocalIndex>& order) {
+  std::vector<LocalIndex> position(order.size());
+  for (LocalIndex p = 0; p < A.n(); ++p) position[order[p]] = p;
+  auto result = empty_rows();
+  Entries row;
+  for (const LocalIndex i : order) {
     row.clear();
-    for (auto k = rows_.start[i]; k < rows_.start[i + 1]; ++k)
-      row.emplace_back(position[rows_.column[k]], rows_.value[k]);
-    std::sort(row.begin(), row.end());
-    for (const auto& [j, value] : row) {
-      factors_.column.push_back(j);
-      factors_.value.push_back(value);
-    }
-    factors_.start.push_back(factors_.column.size());
+    for (auto k = A.start[i]; k < A.start[i + 1]; ++k) row.emplace_back(position[A.column[k]], A.value[k]);
+    append(row, result);
   }
+  return result;
+}
+
+/// Returns A with zeros a_im for fill of the first level: a_ij a_jm with j < i and j < m.
+LocalRows with_fill(const LocalRows& A) {
+  auto result = empty_rows();
+  std::vector<LocalIndex> row_of(A.n(), -1);  // [column] last row that contains it
+  Entries row;
+  for (LocalIndex i = 0; i < A.n(); ++i) {
+    row.clear();
+    for (auto k = A.start[i]; k < A.start[i + 1]; ++k) {
+      row.emplace_back(A.column[k], A.value[k]);
+      row_of[A.column[k]] = i;
+    }
+    for (auto k = A.start[i]; A.column[k] < i; ++k)
+      for (auto m = A.find(A.column[k], A.column[k]) + 1; m < A.start[A.column[k] + 1]; ++m)
+        if (std::exchange(row_of[A.column[m]], i) != i) row.emplace_back(A.column[m], 0);
+    append(row, result);
+  }
+  return result;
+}
+
+}  // namespace
+
+FlowFactors::FlowFactors(const fields::CrsMatrix& A) : map_(A.getRowMap()) {
+  const auto rows = rows_of(A);
+  order_ = flow_order(rows);
+  factors_ = with_fill(reordered(rows, order_));
+  factor();
 }
 
 void FlowFactors::factor() {
-  reorder();
   auto& [start, column, value] = factors_;
   const LocalIndex n = factors_.n();
   diagonal_.resize(n);
@@ -76,7 +101,7 @@ void FlowFactors::factor() {
         if (const auto to = place[column[m]]; to != absent) value[to] -= value[k] * value[m];
     }
     Real& pivot = value[diagonal_[i]];
-    if (!(pivot * original > min_pivot * original * original)) pivot = original != 0 ? original : 1;
+    if (!(std::abs(pivot) > min_pivot * std::abs(original))) pivot = original != 0 ? original : 1;
     inverse_[i] = 1 / pivot;
     for (auto k = start[i]; k < start[i + 1]; ++k) place[column[k]] = absent;
   }
@@ -95,7 +120,7 @@ void FlowFactors::apply(const fields::MultiVector& b, fields::MultiVector& y, Te
   const LocalIndex n = factors_.n();
   for (std::size_t v = 0; v < from.extent(1); ++v) {
     for (LocalIndex i = 0; i < n; ++i) {
-      Real sum = from(order_.row[i], v);
+      Real sum = from(order_[i], v);
       for (auto k = start[i]; k < diagonal_[i]; ++k) sum -= value[k] * z_[column[k]];
       z_[i] = sum;
     }
@@ -103,7 +128,7 @@ void FlowFactors::apply(const fields::MultiVector& b, fields::MultiVector& y, Te
       Real sum = z_[i];
       for (auto k = diagonal_[i] + 1; k < start[i + 1]; ++k) sum -= value[k] * z_[column[k]];
       z_[i] = sum * inverse_[i];
-      Real& end = to(order_.row[i], v);
+      Real& end = to(order_[i], v);
       end = alpha * z_[i] + (beta == 0 ? 0 : beta * end);
     }
   }

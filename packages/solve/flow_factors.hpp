@@ -5,21 +5,19 @@
 
 namespace sprekk::solve {
 
-/// Approximate inverse (L U)^-1 by incomplete factors without fill, ILU(0) (Meijerink and van der Vorst 1977), in the
-/// order of flow_order(). Downstream first, the factor L contains the small couplings against the flow relative to
-/// large diagonals; upstream first, it would contain large ones relative to small diagonals. Couplings between ranks
-/// are omitted. If couplings follow a flow without circulation, the factors on one rank are exact. A pivot that is much
-/// smaller than the diagonal, or of another sign, is replaced by the diagonal, and a zero diagonal by 1.
+/// Approximate inverse (L U)^-1 by incomplete factors with one level of fill, ILU(1) (Meijerink and van der Vorst 1977;
+/// Saad 2003, 10.3.3), in the order of flow_order(): an entry of the factors is a coupling of A, or the product of two.
+/// Downstream first, the factor L contains the small couplings against the flow relative to large diagonals; upstream
+/// first, it would contain large ones relative to small diagonals. Couplings between ranks are omitted. If couplings
+/// follow a flow without circulation, the factors on one rank are exact. A pivot that is much smaller than the diagonal
+/// is replaced by it, and a zero diagonal by 1. Pivots may be negative: where the flow depends on the carried quantity,
+/// so may be diagonals and eigenvalues of A.
 class FlowFactors : public fields::Operator {
  public:
-  /// Copies the present values of A, a matrix with equal row and domain map, and finds their order. Local.
+  /// Factorises the present values of A, a matrix with equal row and domain map. Local.
   explicit FlowFactors(const fields::CrsMatrix& A);
 
-  /// Returns the number of owned rows that take from others in the order of the flow.
-  LocalIndex n_directed() const { return order_.n_directed; }
-  /// Factorises these values. Local.
-  void factor();
-  double bytes() const;  ///< of factors on this rank
+  double bytes() const;  ///< on this rank
 
   RCP<const fields::Map> getDomainMap() const override { return map_; }
   RCP<const fields::Map> getRangeMap() const override { return map_; }
@@ -28,11 +26,10 @@ class FlowFactors : public fields::Operator {
              Real beta) const override;
 
  private:
-  void reorder();
+  void factor();
 
   RCP<const fields::Map> map_;
-  LocalRows rows_;  // of A, in its order
-  FlowOrder order_;
+  std::vector<LocalIndex> order_;      // [position] row
   LocalRows factors_;                  // [position] L without its unit diagonal, and U
   std::vector<std::size_t> diagonal_;  // [position] place of the diagonal
   std::vector<Real> inverse_;          // [position] inverse pivot

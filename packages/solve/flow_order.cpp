@@ -99,16 +99,14 @@ class Components {
 
 }  // namespace
 
-FlowOrder flow_order(const LocalRows& A) {
+std::vector<LocalIndex> flow_order(const LocalRows& A) {
   const auto sources = sources_of(A);
-  FlowOrder order;
-  for (LocalIndex i = 0; i < A.n(); ++i) order.n_directed += sources.start[i + 1] > sources.start[i];
   const Components components(sources);
   std::vector<LocalIndex> next(components.n() + 1, 0);  // [n - 1 - component] next position
   for (const LocalIndex c : components.of_row()) ++next[components.n() - c];
   for (LocalIndex c = 0; c < components.n(); ++c) next[c + 1] += next[c];
-  order.row.resize(A.n());
-  for (LocalIndex i = 0; i < A.n(); ++i) order.row[next[components.n() - 1 - components.of_row()[i]]++] = i;
+  std::vector<LocalIndex> order(A.n());
+  for (LocalIndex i = 0; i < A.n(); ++i) order[next[components.n() - 1 - components.of_row()[i]]++] = i;
   return order;
 }
 

@@ -20,15 +20,10 @@ struct LocalRows {
   Real at(LocalIndex row, LocalIndex column) const;
 };
 
-/// Couplings along a flow. Row i takes from j if
+/// Returns an order of the rows along a flow. Row i takes from j if
 ///   |a_ij| > 2 |a_ji|   and   |a_ij| > 1e-3 sqrt(|a_ii a_jj|).
-struct FlowOrder {
-  std::vector<LocalIndex> row;  ///< [position] a permutation of the rows
-  LocalIndex n_directed = 0;    ///< number of rows that take from others
-};
-
-/// Returns the order in which rows precede those from which they take: strong components of this graph (Tarjan 1972) in
-/// topological order, downstream first. Rows of a component keep their order.
-FlowOrder flow_order(const LocalRows& A);
+/// Rows precede those from which they take: strong components of this graph (Tarjan 1972) in topological order,
+/// downstream first. Rows of a component keep their order. [position] a permutation of the rows
+std::vector<LocalIndex> flow_order(const LocalRows& A);
 
 }  // namespace sprekk::solve

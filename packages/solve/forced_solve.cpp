@@ -8,7 +8,7 @@ namespace sprekk::solve {
 namespace {
 
 constexpr Real first_accuracy = 1e-3, next_accuracy = 1e-2, safety = 1e-2;
-constexpr Real accuracy_of_parts = 1e-6;  // and of steps with advected blocks, whose rows differ in size
+constexpr Real accuracy_of_parts = 1e-8;  // and of steps with advected blocks, whose rows differ in size
 constexpr int max_refinements = 20;       // more than powers of next_accuracy
 
 void add(Real factor, const BlockVector& from, BlockVector& to) {

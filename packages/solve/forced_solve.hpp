@@ -13,7 +13,7 @@ namespace sprekk::solve {
 ///   lead. Otherwise the solve continues to the tolerance.
 /// - No face changes state: convergence is almost quadratic. The solve ends at the larger of 0.01 (e_k / e_(k-1))^2 (as
 ///   Eisenstat and Walker 1996, choice 2) and 0.01 tolerance / e_k (as Kelley 1995, 6.3), at most the second accuracy,
-///   or 1e-6 with advected blocks. e is the largest measure of convergence. In the first iteration the ratio is 0, or 1
+///   or 1e-8 with advected blocks. e is the largest measure of convergence. In the first iteration the ratio is 0, or 1
 ///   with advected blocks, whose rows are not linear.
 /// Refers to its arguments. All members are collective.
 class ForcedSolve {

@@ -55,6 +55,11 @@ int iterations(const std::vector<LinearReport>& solves);
 
 inline constexpr Real acceptable_linear_residual = 1e-8;
 
+/// Number of floating-point operations.
+struct Work {
+  Real setup = 0, solve = 0;
+};
+
 /// Linear solver. All members are collective on the communicator of the matrix and return the same on all ranks.
 class LinearSolver {
  public:
@@ -69,8 +74,13 @@ class LinearSolver {
   /// Computes x = A^-1 b to the relative residual `tolerance`, or as accurately as round-off permits.
   virtual LinearReport solve(const Vector& b, Vector& x, Real tolerance) = 0;
 
-  /// Returns the approximate inverse of the last system, as used by the Krylov method; null if there is none.
+  /// Returns the approximate inverse of the last system, as used by the Krylov method, or the factors of a direct
+  /// solver; null if there is none.
   virtual RCP<const fields::Operator> preconditioner() const { return Teuchos::null; }
+
+  /// Returns the floating-point operations of the last set-up and of an application of preconditioner(); 0: unknown, or
+  /// the set-up is not exact. Stored data.
+  virtual Work work() const { return {}; }
 
   /// Returns the costs of the parts of the preconditioner. Stored data.
   virtual std::vector<SolverCost> costs() const { return {}; }

@@ -56,12 +56,16 @@ LocalElimination::LocalElimination(BlockProblem& problem)
 }
 
 LocalElimination::Status LocalElimination::update(BlockProblem& problem) {
-  const bool newly_constrained = take_constraints(problem);
+  const bool newly_constrained = take_constraints(problem), had_proximal = proximal_;
+  for (auto& group : plan_.groups)
+    for (auto& response : group.response) response.column = {};  // of watch_change()
+  proximal_ = false;
   for (int r = 0; r < n_remaining(); ++r) {
     const auto proximal = problem.globalisation().proximal(plan_.remaining[r]);
     for (int s = 0; s < n_remaining() && (newly_constrained || fresh_); ++s)
-      if (!block(r, s).matrix.is_null()) block(r, s).held = find_held(block(r, s), *constrained_[r]);
-    if (newly_constrained || fresh_ || !proximal.is_null()) keep_held(block(r, r), *constrained_[r], proximal);
+      if (!block(r, s).matrix.is_null()) block(r, s).constrained_rows = find_constrained(block(r, s), *constrained_[r]);
+    proximal_ = proximal_ || !proximal.is_null();
+    if (newly_constrained || fresh_ || !proximal.is_null()) keep_constrained(block(r, r), *constrained_[r], proximal);
     for (int s = 0; s < n_remaining(); ++s)
       if (!block(r, s).matrix.is_null()) start_from_bulk(block(r, s));
     if (!proximal.is_null()) add_diagonal(*proximal, block(r, r));
@@ -84,8 +88,9 @@ LocalElimination::Status LocalElimination::update(BlockProblem& problem) {
     }
   const bool changed = base::on_any_rank(*comm_, fresh_ || sum != checksum_);
   checksum_ = sum;
+  const bool by_groups = !(newly_constrained || fresh_ || proximal_ || had_proximal);
   fresh_ = !failure.empty();
-  return {changed, failure};
+  return {changed, by_groups, failure};
 }
 
 /// Updates the flags of unknowns and columns. Returns true if any has changed on any rank. Collective.
@@ -153,12 +158,14 @@ bool LocalElimination::factor(GroupPlan& group, std::string& failure) const {
     const View<Real*> z("responses", m * start(start.extent(0) - 1) + Response::strip);
     response.value = z;
     for (const auto& fill : response.fill) fill(z);
+    if (change_) change_->take_coupling(z);
     fields::in_widest_instructions([&] {
       Kokkos::parallel_for(
           "responses", Policy(0, n), KOKKOS_LAMBDA(LocalIndex e) {
             lu_solve(m, &lu(e * m * m), &pivot(e * m), &z(m * start(e)), start(e + 1) - start(e));
           });
     });
+    if (change_) change_->take_response(z);
     group.slots->exchange_rows(start, z, m);
   }
   return true;
@@ -221,6 +228,12 @@ Kokkos::Array<const Real*, max_small_size> LocalElimination::values_of_component
         values[component] = A->getLocalMatrixDevice().values.data();
   }
   return values;
+}
+
+GroupChange* LocalElimination::watch_change(const BlockProblem& problem) {
+  if (plan_.groups.size() != 1 || n_remaining() != 1 || !block(0, 0).saved) return nullptr;
+  change_ = std::make_unique<GroupChange>(problem, plan_.groups.front(), plan_.remaining.front());
+  return change_.get();
 }
 
 RCP<const Matrix> LocalElimination::condensed(int r, int s) const { return block(r, s).matrix; }

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 #include "solve/elimination_plan.hpp"
+#include "solve/group_change.hpp"
 #include "solve/small_lu.hpp"
 
 namespace sprekk::solve {
@@ -20,6 +22,7 @@ class LocalElimination {
  public:
   struct Status {
     bool changed;         ///< values of some J_ab differ from those after the previous update
+    bool by_groups;       ///< only local groups have changed them
     std::string failure;  ///< empty, or the group and entity that are singular; J is then unusable
   };
 
@@ -36,6 +39,11 @@ class LocalElimination {
   RCP<const Matrix> condensed(int r, int s) const;
   /// Calls work(A) while J of the r-th remaining block is A_aa with the constraints, but without the local groups.
   void with_bulk(int r, const std::function<void(const RCP<const Matrix>& A)>& work) const;
+
+  /// Returns the change of J by its local group, which then follows each update(); null if there are several groups or
+  /// remaining blocks, or if A_aa is not constant. Before the first update(). The object belongs to the elimination.
+  /// Collective.
+  GroupChange* watch_change(const BlockProblem& problem);
 
   /// Returns c [r] for b [block].
   BlockVector reduce(const BlockVector& b) const;
@@ -57,6 +65,8 @@ class LocalElimination {
   const fields::BlockMatrix* matrix_;  ///< matrix of the problem
   EliminationPlan plan_;
   std::vector<RCP<Vector>> constrained_;  ///< [r] owned unknown: 1 if prescribed
+  std::unique_ptr<GroupChange> change_;   ///< null before watch_change()
+  bool proximal_ = false;                 ///< the last update had proximal terms
   std::uint64_t checksum_ = 0;
   bool fresh_ = true;
 };

@@ -54,4 +54,11 @@ void MinimalResidual::apply(const fields::MultiVector& b, fields::MultiVector& y
   }
 }
 
+RCP<const fields::Operator> minimal_residual(const RCP<const fields::Matrix>& A, const RCP<const fields::Operator>& M,
+                                             int n_steps) {
+  fields::Vector diagonal(A->row_map());
+  A->copy_diagonal(diagonal);
+  return rcp(new MinimalResidual(A, M, diagonal, n_steps));
+}
+
 }  // namespace sprekk::solve

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fields/types.hpp"
+#include "fields/matrix.hpp"
 
 namespace sprekk::solve {
 
@@ -28,5 +28,9 @@ class MinimalResidual : public fields::Operator {
   mutable fields::Vector x_, r_;                     // r_: scaled
   mutable fields::BlockVector directions_, images_;  // [step] z and D^(-1/2) A z; images are orthonormal
 };
+
+/// Returns the same for a matrix and its diagonal. Local.
+RCP<const fields::Operator> minimal_residual(const RCP<const fields::Matrix>& A, const RCP<const fields::Operator>& M,
+                                             int n_steps);
 
 }  // namespace sprekk::solve

@@ -13,6 +13,7 @@
 #include "base/check.hpp"
 #include "base/parameters.hpp"
 #include "base/text.hpp"
+#include "solve/balance_check.hpp"
 #include "solve/newton_step.hpp"
 
 namespace sprekk::solve {
@@ -21,14 +22,16 @@ namespace {
 using NOX::StatusTest::StatusType;
 
 constexpr int max_lagged = 60;  // steps with lagged coefficients
+constexpr int max_additional = 2;
 
-/// Convergence test. Converged: all measures are at most the tolerance. Failed: a measure or the residual is not
-/// finite, no progress, too many iterations, or stopped. Saves the history and the reason.
+/// Convergence test. Converged: all measures are at most the tolerance. If round-off hides an error of the sums of
+/// balances, up to two iterations follow. Failed: a measure or the residual is not finite, no progress, too many
+/// iterations, or stopped. Saves the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
   MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const NewtonStep::Report& step,
               NewtonReport& report)
-      : problem_(problem), options_(options), picard_(picard), step_(step), report_(report) {}
+      : problem_(problem), options_(options), picard_(picard), step_(step), report_(report), balances_(problem) {}
 
   StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const auto& group = dynamic_cast<const NoxGroup&>(solver.getSolutionGroup());
@@ -41,10 +44,16 @@ class MeasureTest : public NOX::StatusTest::Generic {
     const Real value = worst ? worst->value : 0;
     report_.reason.clear();
     status_ = NOX::StatusTest::Unconverged;
+    if (report_.iterations == 0) balances_.start(report_.measures, options_.tolerance);
+    balances_.note(group.f());
+    const bool within_tolerance = value <= options_.tolerance && !(picard_.lags() && picard_.n_steps() > 0);
     if (!std::isfinite(group.getNormF())) {
       fail("the residual is not finite");
-    } else if (value <= options_.tolerance && !(picard_.lags() && picard_.n_steps() > 0)) {
-      status_ = NOX::StatusTest::Converged;
+    } else if (within_tolerance) {
+      if (needs_another_iteration(group))
+        save(group.x().x());
+      else
+        status_ = NOX::StatusTest::Converged;
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
     } else if ((picard_.lags() && picard_.n_steps() >= max_lagged) ||
@@ -62,6 +71,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
   }
 
   StatusType getStatus() const override { return status_; }
+  /// Returns the first iterate whose measures are at most the tolerance, if another iteration followed; else empty.
+  const BlockVector& accepted() const { return accepted_; }
   std::ostream& print(std::ostream& stream, int indent) const override {
     stream << std::string(indent, ' ');
     for (const auto& measure : report_.measures) stream << fmt::format("{} {:.3e}  ", measure.name, measure.value);
@@ -69,6 +80,16 @@ class MeasureTest : public NOX::StatusTest::Generic {
   }
 
  private:
+  bool needs_another_iteration(const NoxGroup& group) {
+    if (report_.iterations == 0 || n_additional_ == max_additional || balances_.closes(group.x())) return false;
+    ++n_additional_;
+    return true;
+  }
+  void save(const BlockVector& x) {
+    if (!accepted_.empty()) return;
+    accepted_ = fields::create_like(x);
+    fields::copy(x, accepted_);
+  }
   void fail(const std::string& reason) {
     report_.reason = reason;
     status_ = NOX::StatusTest::Failed;
@@ -79,6 +100,9 @@ class MeasureTest : public NOX::StatusTest::Generic {
   const Picard& picard_;
   const NewtonStep::Report& step_;
   NewtonReport& report_;
+  BalanceCheck balances_;
+  int n_additional_ = 0;  // iterations after the measures have converged
+  BlockVector accepted_;
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
@@ -234,7 +258,7 @@ NewtonReport Newton::solve(Evaluation& x) {
   std::optional<Picard> picard(std::in_place, problem_, x);
   const auto step = rcp(new NewtonStep(problem_, *forced_, *picard));
   const auto& found = step->report();
-  const RCP<NOX::StatusTest::Generic> test = rcp(new MeasureTest(problem_, options_, *picard, found, report));
+  const auto test = rcp(new MeasureTest(problem_, options_, *picard, found, report));
   const auto parameters = nox_parameters(options_, step, problem_.comm()->getRank());
   RCP<NOX::Solver::Generic> solver;
   try {
@@ -249,12 +273,14 @@ NewtonReport Newton::solve(Evaluation& x) {
   report.advected_solves = found.advected_solves;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.stopped) return report;
-  x = dynamic_cast<const NoxGroup&>(solver->getSolutionGroup()).x();
+  const bool returns_accepted = !report.converged && !test->accepted().empty();  // an additional iteration failed
+  x = returns_accepted ? Evaluation(test->accepted()) : dynamic_cast<const NoxGroup&>(solver->getSolutionGroup()).x();
+  report.converged = report.converged || returns_accepted;
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   if (report.iterations > 0) {
     const bool damped = base::on_any_rank(*problem_.comm(), found.damped);
     factors_ = damped ? Factors::damped : Factors::good;
-    if (report.converged && damped) {  // before the commit, after which sliding faces would stick
+    if (report.converged && (damped || returns_accepted)) {  // before the commit, after which sliding faces would stick
       problem_.globalisation().damp(0, {});
       problem_.jacobian(x);
       factors_ = Factors::old;
@@ -264,17 +290,20 @@ NewtonReport Newton::solve(Evaluation& x) {
   if (report.iterations > 0 && !report.linear_solves.back().converged)
     report.reason = report.linear_solves.back().reason;
   if (!report.converged && report.reason.empty()) report.reason = "NOX gave up";
+  if (returns_accepted) report.reason.clear();
   report.floating = found.floating;
   report.oscillating = step->iterates().changed_lately();
   return report;
 }
 
+void Newton::linearize(const Evaluation& x) {
+  problem_.globalisation().damp(0, {});
+  problem_.jacobian(x);
+  factors_ = Factors::old;
+}
+
 LinearReport Newton::solve_linearized(const Evaluation& x, const BlockVector& b, BlockVector& dx, Real tolerance) {
-  if (linear_->n_setups() == 0 || factors_ == Factors::damped) {
-    problem_.globalisation().damp(0, {});
-    problem_.jacobian(x);
-    factors_ = Factors::old;
-  }
+  if (factors_ == Factors::damped || (factors_ == Factors::good && linear_->n_setups() == 0)) linearize(x);
   if (factors_ == Factors::old) linear_->update();
   factors_ = Factors::good;
   return linear_->solve(b, dx, tolerance);

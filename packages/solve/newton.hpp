@@ -58,6 +58,8 @@ class Newton {
   NewtonReport solve(BlockVector& x);
   NewtonReport solve(Evaluation& x);
 
+  /// Computes the Jacobian at x, for the next calls of solve_linearized(). Collective.
+  void linearize(const Evaluation& x);
   /// Computes dx = A^-1 b, [block], the linear response of x to small forces b. Rows of constrained unknowns are dx_i =
   /// b_i. A is the last Jacobian of a linear solve. If that was damped, A is the Jacobian at convergence, or at x after
   /// a failure. If there was none, A is the Jacobian at x. Collective.

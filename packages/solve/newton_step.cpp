@@ -13,7 +13,9 @@ namespace {
 constexpr Real smallest_length = 1.0 / 64, min_damping = 0.1, max_damping = 10;
 constexpr Real solved_part = 0.1;  // of the merit of the lagged f
 constexpr int max_frozen = 4, max_unbalanced = 3, max_restarts = 3;
-constexpr Real max_imbalance = 10, max_error_of_advected = 1;  // measures of convergence
+constexpr Real max_imbalance = 10, max_error_of_advected = 1;   // measures of convergence
+constexpr Real solved_by_carrying = 0.1, enough_smaller = 0.5;  // of such measures
+constexpr int max_flow_steps = 4;
 
 using Part = ForcedSolve::Part;
 
@@ -56,6 +58,7 @@ bool NewtonStep::linearize(const NoxGroup& group, NOX::Abstract::Vector& dx) {
   linear_.jacobian(group.x());
   auto blocks = blocks_of(dx);
   flow_first_ = begins_flow(group);
+  n_flow_steps_ = flow_first_ ? n_flow_steps_ + 1 : 0;
   if (flow_first_) {
     report_.damped = true;
     report_.linear_solves.push_back(linear_.solve_part(Part::others, group.f(), blocks));
@@ -149,16 +152,21 @@ bool NewtonStep::reject(const Attempt& attempt, Trial& taken) {
   return back;
 }
 
-/// Returns whether this is the first step of a solve, and its flow is far from balance. The linearisation of advected
-/// blocks about this flow is then meaningless.
+/// Returns whether the flow is far from balance at the start of a solve, or after few steps of the flow that advected
+/// blocks could not follow. The linearisation of these blocks about this flow is then meaningless.
 bool NewtonStep::begins_flow(const NoxGroup& group) const {
-  return iterates_.empty() && damping_ == 0 && linear_.has_advected() && error_of(group, Part::others) > max_imbalance;
+  const bool starts =
+      iterates_.empty() || (only_balances_ && flow_first_ && !carried_ && n_flow_steps_ < max_flow_steps);
+  return starts && damping_ == 0 && linear_.has_advected() && error_of(group, Part::others) > max_imbalance;
 }
 
 /// Lets advected blocks follow a strong change of their flow: after a step of the flow alone, or if their errors have
 /// grown because they are linearised about another flow. For a given flow, their rows are linear or nearly so. The
-/// blocks return to the last iterate, and one solve with the new flow replaces their step if it reduces their errors.
+/// blocks return to the last iterate, and one solve with the new flow replaces their step if it reduces their errors to
+/// a tenth. If the flow depends on them, it would adjust, but here all other unknowns are fixed. Such a solve may then
+/// lead to values far outside of their bounds.
 void NewtonStep::carry(const Attempt& attempt, Trial& taken) {
+  carried_ = false;
   if (!linear_.has_advected()) return;
   auto& group = attempt.group;
   const Real allowed = std::max(max_error_of_advected, error_of(attempt.from, Part::advected));
@@ -177,8 +185,10 @@ void NewtonStep::carry(const Attempt& attempt, Trial& taken) {
   if (report_.advected_solves.back().converged) {
     group.computeX(NoxGroup(group), *dx, -1);
     const Real merit = this->merit(group);
-    if (std::isfinite(merit) && error_of(group, Part::advected) < error_of(stepped, Part::advected)) {
+    const Real error = error_of(group, Part::advected);
+    if (std::isfinite(merit) && error < (only_balances_ ? solved_by_carrying : 1) * error_of(stepped, Part::advected)) {
       taken.merit = merit;
+      carried_ = true;
       return;
     }
   }
@@ -213,9 +223,20 @@ NewtonStep::Found NewtonStep::try_direction(Attempt& attempt) const {
   if (!searches()) return full(attempt, attempt.along);
   for (Real a = 1; a >= smallest_length; a /= 2) {
     const Real m = merit_after(attempt, attempt.along, a);
-    if (std::isfinite(m) && m <= (1 - 1e-3 * a) * iterates_.limit(picard_.lags())) return Trial{a, m};
+    if (!std::isfinite(m)) continue;
+    if (m <= (1 - 1e-3 * a) * iterates_.limit(picard_.lags()) || (a == 1 && balances(attempt))) return Trial{a, m};
   }
   return {};
+}
+
+/// Returns whether the last trial has halved the largest error of all balances. The merit almost ignores advected
+/// blocks, but a step that corrects them may change a flow that depends on them.
+bool NewtonStep::balances(const Attempt& attempt) const {
+  if (!only_balances_ || !linear_.has_advected()) return false;
+  const auto error = [&](const NoxGroup& group) {
+    return std::max(error_of(group, Part::advected), error_of(group, Part::others));
+  };
+  return error(attempt.group) < enough_smaller * error(attempt.from);
 }
 
 NewtonStep::Found NewtonStep::full(const Attempt& attempt, Direction& along) const {

@@ -27,11 +27,12 @@ namespace sprekk::solve {
 /// - Entities with alternating states are damped by Iterates::swinging() in the next step.
 /// - Coefficients of fluxes that depend on x: Picard decides when steps are searched and which are rejected.
 /// - If the flow is far from balance at the start of a solve, the first step changes the flow only. Advected blocks
-///   follow strong changes of the flow by a solve of their own, see carry().
+///   follow strong changes of the flow by a solve of their own, see carry(). In problems of balances only (rigid rock),
+///   up to three more steps balance the flow first if this does not succeed.
+/// - In such problems a full step is also accepted if it halves the largest measure of all balances.
 /// - Resistance that decreases with the motion: once a full step with lagged coefficients increases the merit of the
-/// lagged problem,
-///   later steps are searched for a decrease of this merit. The first step of a Picard phase is not searched. The
-///   coefficients remain frozen until the merit has decreased to a tenth.
+///   lagged problem, later steps are searched for a decrease of this merit. The first step of a Picard phase is not
+///   searched. The coefficients remain frozen until the merit has decreased to a tenth.
 /// Refers to its arguments. All members are collective.
 class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Generic {
  public:
@@ -46,7 +47,9 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   };
 
   NewtonStep(BlockProblem& problem, ForcedSolve& linear, Picard& picard)
-      : problem_(problem), globalisation_(problem.globalisation()), linear_(linear), picard_(picard) {}
+      : problem_(problem), globalisation_(problem.globalisation()), linear_(linear), picard_(picard) {
+    for (const auto& block : problem.blocks()) only_balances_ = only_balances_ && block.balance;
+  }
 
   /// Computes the direction at the iterate of the group. A failed linear solve is in the report; then compute() below
   /// repeats it with damping.
@@ -92,6 +95,7 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   void accept(NoxGroup& group, const Trial& taken);
 
   Found try_direction(Attempt& attempt) const;
+  bool balances(const Attempt& attempt) const;
   Found full(const Attempt& attempt, Direction& along) const;
   Real merit_after(const Attempt& attempt, Direction& along, Real length) const;
   Real merit(NoxGroup& group) const;
@@ -109,12 +113,15 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   Report report_;
   Iterates iterates_;
   Real damping_ = 0;
-  int n_unbalanced_ = 0;     // steps in which a body met no resistance
-  int n_restarts_ = 0;       // restarts of the search without an acceptable step
-  int n_frozen_ = 0;         // successive steps with frozen coefficients
-  bool weakens_ = false;     // see Globalisation::weakens()
-  bool flow_first_ = false;  // the direction is zero in advected blocks
-  bool struggles_ = false;   // a full step with lagged coefficients increased the merit
+  int n_unbalanced_ = 0;       // steps in which a body met no resistance
+  int n_restarts_ = 0;         // restarts of the search without an acceptable step
+  int n_frozen_ = 0;           // successive steps with frozen coefficients
+  bool weakens_ = false;       // see Globalisation::weakens()
+  bool flow_first_ = false;    // the direction is zero in advected blocks
+  bool only_balances_ = true;  // no rock or joint that deforms
+  int n_flow_steps_ = 0;       // successive directions of this kind
+  bool carried_ = false;       // advected blocks have followed the last step by a solve of their own
+  bool struggles_ = false;     // a full step with lagged coefficients increased the merit
 };
 
 }  // namespace sprekk::solve

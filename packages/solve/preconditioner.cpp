@@ -24,17 +24,14 @@ using Teuchos::ParameterList;
 /// Smallest Chebyshev degree if enriching functions are smoothed as well.
 constexpr int degree_with_enrichment = 6;
 
-/// Number of unknowns up to which a level of corners of facets is solved directly. Aggregates represent constants in
-/// single fractures less well, and factors of matrices with one unknown per node are small.
-constexpr int corner_coarse_size = 4000;
-
 /// Multigrid on the nodes of a block. Blocks that enrich it take part in smoothing on the finest level.
 class NodeMultigrid : public Preconditioner {
  public:
   NodeMultigrid(const MultigridOptions& options, const std::vector<Block>& blocks)
-      : Preconditioner("multigrid", blocks.front().name), options_(options) {
-    const bool at_corners = blocks.front().n_components == 1 && !blocks.front().interpolation.is_null();
-    options_.coarse_size = options.coarsest.value_or(at_corners ? corner_coarse_size : options.coarse_size);
+      : Preconditioner("multigrid", blocks.front().name) {
+    const auto& first = blocks.front();
+    const bool at_corners = first.n_components == 1 && !first.interpolation.is_null();
+    options_ = at_corners ? options.of_corners(dimension(first)) : options.of_nodes();
     for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
     if (!enriching_.empty()) options_.finest_degree = degree_with_enrichment;
   }
@@ -78,7 +75,8 @@ class NodeMultigrid : public Preconditioner {
     const int n = first.block.n_components;
     const auto modes = first.block.near_null_space.make();
     multigrid::Nodes nodes;
-    look(system, [&](const auto& A) { nodes = multigrid::nodes_of(A, modes, first.block.coordinates); });
+    look(system,
+         [&](const auto& A) { nodes = multigrid::nodes_of(A, modes, first.block.coordinates, options_.strong); });
     weak_ = nodes.weak;
     nodes.add_smoothed(base::n_local_elements(*system.joined->map()) / n);
     multigrid_ = rcp(new Multigrid(matrix_.matrix(), std::move(nodes), n, modes, options_));
@@ -92,7 +90,7 @@ class NodeMultigrid : public Preconditioner {
     if (!base::any_rank(comm, [&] { return !weak_.empty(); })) return false;
     std::array<GlobalIndex, 2> count{};
     look(system, [&](const auto& A) {
-      const auto weak = multigrid::weak_couplings(A);
+      const auto weak = multigrid::weak_couplings(A, options_.strong);
       for (std::size_t k = 0; k < weak.size(); ++k) count[0] += k >= weak_.size() || weak[k] != weak_[k];
       count[1] = static_cast<GlobalIndex>(weak.size());
     });
@@ -230,7 +228,7 @@ std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, con
   if (options.type == "direct") return make_direct(blocks);
   if (options.type == "Ifpack2") return make_ifpack2(options.ifpack2, blocks);
   if (options.type == "Gauss-Seidel") return make_gauss_seidel(blocks);
-  if (options.type == "ILU" && !is_condensed_pair(blocks)) return make_advected(first.name, nullptr);
+  if (options.type == "ILU" && !is_condensed_pair(blocks)) return make_advected(first.name);
   if (!first.coordinates.is_null() && enrich_first(blocks)) return make_cycle(options, blocks);
   if (is_condensed_pair(blocks)) return std::make_unique<CondensedPair>(options, blocks);
   if (options.type == "MueLu") return make_muelu(options.muelu, blocks);
@@ -301,6 +299,8 @@ std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions&
   return std::make_unique<Sweep>(options.sweep, blocks, groups, std::move(parts));
 }
 
+int dimension(const Block& block) { return static_cast<int>(block.coordinates->getNumVectors()); }
+
 bool takes_muelu(const BlockOptions& options, const Block& block) {
   const int n_modes = block.near_null_space.n() > 0 ? block.near_null_space.n() : block.n_components;
   const bool own = Multigrid::can_solve(block.n_components, n_modes);
@@ -323,11 +323,9 @@ std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, cons
 
 std::unique_ptr<Preconditioner> make_cycle(const BlockOptions& options, const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
-  if (options.type == "ILU") return make_advected(first.name, nullptr);
-  std::unique_ptr<Preconditioner> cycle = needs_fine_level(options, blocks)
-                                              ? std::make_unique<FineLevel>(options, blocks)
-                                              : make_multigrid(options, blocks);
-  return takes_flow_order(options, first) ? make_advected(first.name, std::move(cycle)) : std::move(cycle);
+  if (options.type == "ILU") return make_advected(first.name);
+  if (needs_fine_level(options, blocks)) return std::make_unique<FineLevel>(options, blocks);
+  return make_multigrid(options, blocks);
 }
 
 std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks) {

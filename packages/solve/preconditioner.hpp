@@ -62,6 +62,9 @@ class Preconditioner {
 std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
                                                     const std::vector<Block>& blocks);
 
+/// Number of coordinates of the entities of a block.
+int dimension(const Block& block);
+
 /// Returns whether MueLu replaces Sprekk's multigrid for a block: as requested, and for node sizes without compiled
 /// code. Throws an Error if the requested type is not available.
 bool takes_muelu(const BlockOptions& options, const Block& first);
@@ -71,7 +74,7 @@ bool takes_flow_order(const BlockOptions& options, const Block& first);
 /// Returns multigrid for the first block, by its coordinates and near-null space, and for blocks that enrich it. MueLu
 /// solves for one block only.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, const std::vector<Block>& blocks);
-/// Returns the same, below a FineLevel if the blocks need one, and with make_advected() for an advected block.
+/// Returns the same, below a FineLevel if the blocks need one, or make_advected() if requested.
 std::unique_ptr<Preconditioner> make_cycle(const BlockOptions& options, const std::vector<Block>& blocks);
 
 /// Return methods for the matrix of one block, or of several joined blocks.
@@ -80,9 +83,8 @@ std::unique_ptr<Preconditioner> make_ifpack2(const Teuchos::ParameterList& given
 std::unique_ptr<Preconditioner> make_gauss_seidel(const std::vector<Block>& blocks);
 std::unique_ptr<Preconditioner> make_direct(const std::vector<Block>& blocks);
 /// Returns incomplete factors in the order of a flow, see FlowFactors, for the group that begins with `block`, in a few
-/// steps of MinimalResidual. While less than a hundredth of the rows take from others in a flow, `at_rest` replaces the
-/// factors; null: never.
-std::unique_ptr<Preconditioner> make_advected(const std::string& block, std::unique_ptr<Preconditioner> at_rest);
+/// steps of MinimalResidual.
+std::unique_ptr<Preconditioner> make_advected(const std::string& block);
 
 /// Matrix of a whole system, for methods that require one.
 class WholeMatrix {

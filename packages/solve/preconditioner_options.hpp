@@ -15,9 +15,18 @@ class Section;
 
 namespace sprekk::solve {
 
-struct MultigridOptions : multigrid::Options {
-  std::optional<int> coarsest;  ///< replaces coarse_size; absent: 300, or 4000 for fields on facets
+/// Options of Sprekk's multigrid. Absent values depend on the field.
+struct MultigridOptions {
+  std::optional<int> degree, coarsest;  ///< Options::degree, Options::coarse_size
+  int minimum_per_rank = multigrid::Options().minimum_per_rank;
 
+  multigrid::Options of_nodes() const;
+  /// For the corners of a scalar field on facets, in the dimension `dim`. The coarsest level is larger, because
+  /// aggregates represent constants in single fractures less well, and factors of matrices with one unknown per node
+  /// are small. Higher degrees, and in 2D aggregates along strong couplings, serve anisotropic coefficients. In 3D such
+  /// aggregates would be small, and the coarse levels large. The diagonal of the last level is raised less, because
+  /// coefficients may differ by a factor of 1e10.
+  multigrid::Options of_corners(int dim) const;
   void describe(base::Section& section);
 };
 

@@ -10,7 +10,7 @@ namespace {
 constexpr Real aim = 0.8;                           // relative to the tolerance
 constexpr Real max_shrink = 0.1, min_shrink = 0.5;  // relative to the rejected length
 constexpr Real shorter = 0.9;                       // largest length after a rejection, relative to the rejected one
-constexpr Real same = 1e-12;                        // relative round-off of times
+constexpr Real same = 1e-14;                        // relative round-off of times
 
 }  // namespace
 
@@ -23,7 +23,8 @@ std::vector<Real>::const_iterator StepControl::next_stop(Real t) const {
 Real StepControl::bounded(Real dt) const { return std::clamp(dt, options_.smallest, options_.largest); }
 
 Real StepControl::end_of_step(Real t) const {
-  const Real stop = *next_stop(t), rest = stop - t;
+  const auto next = next_stop(t);
+  const Real stop = next == stops_.end() ? stops_.back() : *next, rest = stop - t;
   constexpr Real slightly = 1.05;  // a slightly longer step is better than an additional one
   if (rest <= slightly * memory_.length) return stop;
   return t + (rest < 2 * memory_.length ? rest / 2 : memory_.length);

@@ -2,6 +2,7 @@
 
 #include "base/parameters.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprekk::solve {
@@ -20,7 +21,8 @@ void Time::describe(base::Section& s) {
   s.entry(first_step, "first step", "s", base::positive(),
           "length of the first adaptive step; absent: a fraction of the total time");
   s.entry(smallest_step, "smallest step", "s", base::positive(),
-          "minimum length of adaptive steps, accepted with any error; absent: 1e-9 of the total time");
+          "minimum length of adaptive steps, accepted with any error; absent: 1e-9 of the total time, 1e-13 if rates "
+          "vary by many orders of magnitude");
   s.entry(largest_step, "largest step", "s", base::positive(),
           "maximum length of adaptive steps; absent: the total time");
   s.choice(scheme, "scheme", {"implicit Euler", "BDF2"},
@@ -59,6 +61,18 @@ void Time::describe_choice(base::Section& s) const {
   if (first_step && largest_step && *first_step > *largest_step)
     s.fail("first step",
            fmt::format("is {} s, must be at most the \"largest step\", {} s", *first_step, *largest_step));
+}
+
+StepControlOptions Time::control(bool rates, bool evolves) const {
+  const Real all = times().back() - start;
+  const Real first = rates ? std::min<Real>(1e-3, tolerance.value_or(1e-2) / 100) : 0.03;  // of the total
+  const Real largest = largest_step.value_or(all);
+  return {.tolerance = tolerance,
+          .iterations = newton_iterations,
+          .first = std::min(first_step.value_or(first * all), largest),
+          .smallest = std::min(smallest_step.value_or((evolves ? 1e-13 : 1e-9) * all), largest),
+          .largest = largest,
+          .max_growth = scheme == "BDF2" ? 2.28 : 3};  // steps may be 1.05 times longer to meet a time
 }
 
 std::vector<Real> Time::times() const {

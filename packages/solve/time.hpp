@@ -1,6 +1,7 @@
 // Section Time of a scene: time steps of a run.
 #pragma once
 
+#include "solve/step_control.hpp"
 #include "solve/time_stepping.hpp"
 
 #include <optional>
@@ -19,6 +20,9 @@ struct Time {
   std::string scheme = "implicit Euler";  ///< or BDF2, for storage rates
   TimeSteppingOptions stepping;
   void describe(base::Section& section);
+  /// Control of adaptive steps. `rates`: the state depends on the length of the steps. `evolves`: rates may change by
+  /// many orders of magnitude.
+  StepControlOptions control(bool rates, bool evolves) const;
   bool chooses_steps() const { return tolerance || newton_iterations; }
   std::vector<Real> times() const;  ///< ends of all steps, s; for adaptive steps, the prescribed times
 

@@ -41,6 +41,22 @@ NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
   return newton;
 }
 
+/// Solves from the state extrapolated from x, which is that at t, to t + dt, and from x itself if there is none or
+/// Newton's method fails.
+NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, StepReport& report) {
+  if (options_.predicts) {
+    if (auto predicted = predictor_.predict(x.x(), t, dt); !predicted.empty()) {
+      Evaluation from(predicted);
+      auto newton = solve(from, report);
+      if (newton.converged || newton.stopped) {
+        x = from;
+        return newton;
+      }
+    }
+  }
+  return solve(x, report);
+}
+
 /// Proximal continuation. Springs pull the sides of fractures to their present position. Newton's method
 /// finds the state, from which new springs start, with a lower stiffness while Newton's method converges. The last
 /// solve is without springs: after a weak spring or, if that fails, after the weakest. Thin layers yield to much
@@ -99,7 +115,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     size = std::min(size, whole - done);
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
-    auto newton = solve(at, report);
+    auto newton = solve_from_prediction(at, report.time, end - report.time, report);
     if (!newton.converged && !newton.stopped && !relaxed && options_.proximal_continuation && size <= largest_relaxed) {
       relaxed = true;
       at = committed;
@@ -113,6 +129,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       report.floating = problem_.globalisation().floating();
       if (placements == max_placements && !report.floating.empty())
         report.floating += fmt::format(" (after {} attempts its position may be inaccurate)", placements);
+      if (options_.predicts) predictor_.add(x, at.x(), end, end - report.time);
       fields::copy(at.x(), x);
       committed = at;
       done += size;

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "solve/newton.hpp"
+#include "solve/predictor.hpp"
 
 namespace sprekk::solve {
 
 struct TimeSteppingOptions {
   int max_halvings = 6;               ///< smallest substep: step / 2^max_halvings
   bool proximal_continuation = true;  ///< proximal continuation before the first halving, see TimeStepper::relax()
+  bool predicts = false;              ///< Newton's method starts from extrapolated states; not an entry of scenes
 
   void describe(base::Section& section);
 };
@@ -34,20 +36,23 @@ class TimeStepper {
   TimeStepper(BlockProblem& problem, Newton& newton, const TimeSteppingOptions& options)
       : problem_(problem), newton_(newton), options_(options) {}
 
-  /// Advances x, the committed state at t, to t_to. If Newton's method fails and there is contact, proximal
-  /// continuation follows, see relax(); with storage, only from the third halving on. If this fails, x is restored and
-  /// the substep halved. After a converged substep, the length is doubled. Each converged substep is committed, and t
-  /// is the time of x, even if the smallest substep fails or an evaluation throws. Collective.
+  /// Advances x, the committed state at t, to t_to. With predictions, Newton's method starts from the extrapolated
+  /// state, and again from x if it fails. If Newton's method fails and there is contact, proximal continuation follows,
+  /// see relax(); with storage, only from the third halving on. If this fails, x is restored and the substep halved.
+  /// After a converged substep, the length is doubled. Each converged substep is committed, and t is the time of x,
+  /// even if the smallest substep fails or an evaluation throws. Collective.
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
   NewtonReport solve(Evaluation& x, StepReport& report);
+  NewtonReport solve_from_prediction(Evaluation& x, Real t, Real dt, StepReport& report);
   NewtonReport place_at_minimum_norm(Evaluation& x, NewtonReport newton, int& placements, StepReport& report);
   NewtonReport relax(Evaluation& x, StepReport& report);
 
   BlockProblem& problem_;
   Newton& newton_;
   TimeSteppingOptions options_;
+  Predictor predictor_;
   Real committed_dt_ = 0;  // length of the last committed substep; 0 before the first
 };
 

@@ -7,6 +7,7 @@
 #include "base/over_ranks.hpp"
 #include "estimate/step_rates.hpp"
 #include "transport/flux_truncation.hpp"
+#include "transport/present_conduits.hpp"
 #include "transport/well_connections.hpp"
 
 #include <algorithm>
@@ -39,17 +40,31 @@ std::unique_ptr<FluxTruncation> truncation_of(const assembly::System& system, co
 }
 
 /// Transmissivities of fractures with the apertures at x; none: the system has no field "widening". Collective.
-std::optional<std::vector<Real>> transmissivities(const assembly::System& system,
-                                                  const std::vector<laws::Conduit>& conduits,
-                                                  const fields::BlockVector& x) {
+std::optional<FaceTransmissivity> transmissivities(const assembly::System& system,
+                                                   const std::vector<laws::Conduit>& conduits,
+                                                   const fields::BlockVector& x) {
   const int block = block_of(system, "widening");
   if (block < 0) return std::nullopt;
-  std::vector<Real> all;
-  const auto& layout = system.layouts()[block];
-  fields::Vector widening(layout.ghosted());
-  widening.doImport(*x[block], *layout.import(), Tpetra::REPLACE);
-  const auto of_face = widening.getLocalViewHost(Tpetra::Access::ReadOnly);
-  for (std::size_t f = 0; f < conduits.size(); ++f) all.push_back(conduits[f].transmissivity(of_face(f, 0)));
+  const auto local = [&](int of) {
+    const auto& layout = system.layouts()[of];
+    fields::Vector all(layout.ghosted());
+    all.doImport(*x[of], *layout.import(), Tpetra::REPLACE);
+    const auto values = all.getLocalViewHost(Tpetra::Access::ReadOnly);
+    return std::vector<Real>(values.data(), values.data() + values.extent(0));
+  };
+  const auto widening = local(block), p = local(block_of(system, "face pressure"));
+  const auto& facets = *system.mesh().facets;
+  FaceTransmissivity all;
+  mesh::for_face_corners(system.mesh().shape, [&](auto shape) {
+    constexpr int n = mesh::n_face_corners(shape());
+    for (std::size_t f = 0; f < conduits.size(); ++f) {
+      Real rise[n];
+      for (int k = 0; k < n; ++k) rise[k] = p[facets.ridge[f * n + k]] - p[facets.fracture_face[f]];
+      all.of_faces.push_back(conduits[f].transmissivity(widening[f]));
+      for (const Real t : EndTransmissivities<n>(conduits[f], widening[f], rise).value)
+        all.at_ridges.push_back(t / all.of_faces.back());
+    }
+  });
   return all;
 }
 
@@ -78,7 +93,7 @@ class BalanceError final : public estimate::MeshError, estimate::GoalErrors {
       if (std::abs(distance) > std::abs(maximum)) maximum = distance;
     }
     index_of_wells_ = base::sum_over_ranks(*mesh.comm, index_of_wells_);
-    for (const auto& one : error.flow.held) conditions_[one.name] = one.boundary;
+    for (const auto& one : error.flow.constrained) conditions_[one.name] = one.boundary;
     truncation_ = truncation_of(system, blocks_, error.flow);
     const auto& layouts = system.layouts();
     error_ = make_hybrid_error(Teuchos::rcpFromRef(mesh), layouts[blocks_[0]], layouts[blocks_[1]],
@@ -295,10 +310,10 @@ class BalanceError final : public estimate::MeshError, estimate::GoalErrors {
   void add_boundary(const std::string& boundary, const Rows& rows) const {
     const auto& mesh = system_.mesh();
     const auto& facets = *mesh.facets;
-    const auto held = base::to_host(system_.constrained(blocks_[1]));
+    const auto constrained = base::to_host(system_.constrained(blocks_[1]));
     const int number = base::index_of(mesh.boundary_names, boundary);
     const auto set = [&](LocalIndex facet) {
-      if (facet < facets.n_owned && held(facet)) rows(facet, 0) = 1;
+      if (facet < facets.n_owned && constrained(facet)) rows(facet, 0) = 1;
     };
     for (const auto& face : mesh.boundary_faces)
       if (face.boundary == number) set(facets.of_cell[face.cell * mesh::n_faces(mesh.shape) + face.local_face]);

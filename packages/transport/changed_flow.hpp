@@ -26,18 +26,24 @@ struct ChangedFlow {
   Flow base;
   laws::FluidResponse response;
 
-  KOKKOS_INLINE_FUNCTION void flow(int e, const Real (&x)[m + 1], Real (&q)[n]) const {
+  KOKKOS_INLINE_FUNCTION auto at(int e) const { return base.at(e); }
+  KOKKOS_INLINE_FUNCTION void flow(int e, const Real (&x)[m + 1], Real (&q)[n]) const { flow_of(at(e), x, q); }
+  KOKKOS_INLINE_FUNCTION void dflow(int e, const Real (&x)[m + 1], Real (&dq)[n][m + 1]) const {
+    dflow_of(at(e), x, dq);
+  }
+
+  /// flow() and its derivatives with another HybridFlow in place of at().
+  KOKKOS_INLINE_FUNCTION void flow_of(const HybridFlow<n>& here, const Real (&x)[m + 1], Real (&q)[n]) const {
     Real p[m];
     for (int k = 0; k < m; ++k) p[k] = x[k];
-    base.at(e).heavier(response.density(x[m]).value).flow(p, q);
+    here.heavier(response.density(x[m]).value).flow(p, q);
     const Real factor = response.flow(x[m]).value;
     for (Real& each : q) each *= factor;
   }
 
-  KOKKOS_INLINE_FUNCTION void dflow(int e, const Real (&x)[m + 1], Real (&dq)[n][m + 1]) const {
+  KOKKOS_INLINE_FUNCTION void dflow_of(const HybridFlow<n>& here, const Real (&x)[m + 1], Real (&dq)[n][m + 1]) const {
     Real p[m], q[n], weightless[n], by_p[n][m];
     for (int k = 0; k < m; ++k) p[k] = x[k];
-    const auto here = base.at(e);
     const auto density = response.density(x[m]), factor = response.flow(x[m]);
     const auto heavy = here.heavier(density.value);
     heavy.flow(p, q);

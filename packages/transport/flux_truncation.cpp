@@ -15,17 +15,15 @@ class Truncation final : public FluxTruncation {
   using Of = Potentials::Of;
   static constexpr int dim = Flux::dim, n = Flux::n, fewest = dim == 2 ? 4 : 8;  // cells per fit
 
-  Truncation(RCP<const mesh::Mesh> mesh, const Potentials::Layouts& layouts, ConstView<char*> held_facets,
+  Truncation(RCP<const mesh::Mesh> mesh, const Potentials::Layouts& layouts, ConstView<char*> constrained_facets,
              HybridFluxParameters parameters)
       : mesh_(mesh),
         flow_(mesh, layouts, std::move(parameters)),
-        held_(flow_.held(held_facets)),
+        constrained_(flow_.constrained(constrained_facets)),
         around_cells_(cells(), fewest, mesh->comm),
         around_faces_(faces(), dim == 2 ? 2 : 4, mesh->comm) {}
 
-  void set_transmissivity(std::vector<Real> of_local_faces) override {
-    flow_.set_transmissivity(std::move(of_local_faces));
-  }
+  void set_transmissivity(FaceTransmissivity present) override { flow_.set_transmissivity(std::move(present)); }
 
   HybridFlows flows(const fields::Vector& cells, const fields::Vector& facets) const override {
     const Potentials u(flow_.layouts(), flow_.parameters().rock.fluid, {&cells, &facets});
@@ -114,17 +112,17 @@ class Truncation final : public FluxTruncation {
   void add_prescribed(Real t, fields::Vector& facets) const override {
     std::vector<Real> missed(mesh_->facets->id.size(), 0);
     base::collectively(*mesh_->comm, [&] {
-      for (const auto& held : held_) {
-        if (!held.in_rock && dim == 2) continue;  // the end is a point
+      for (const auto& constrained : constrained_) {
+        if (!constrained.in_rock && dim == 2) continue;  // the end is a point
         Real mean = 0;
         mesh::Vector middle{};
-        const auto points = flow_.points(held);
+        const auto points = flow_.points(constrained);
         const auto n_corners = std::count_if(points.begin(), points.end(), [](const auto& p) { return p.a == p.b; });
         for (const auto& point : points) {
-          mean += point.share * flow_.prescribed(held, point.x, t);
+          mean += point.share * flow_.prescribed(constrained, point.x, t);
           for (int i = 0; i < dim && point.a == point.b; ++i) middle[i] += point.x[i] / static_cast<Real>(n_corners);
         }
-        missed[held.facet] = mean - flow_.prescribed(held, middle, t);
+        missed[constrained.facet] = mean - flow_.prescribed(constrained, middle, t);
       }
     });
     add_over_ranks(missed, facets);
@@ -203,7 +201,7 @@ class Truncation final : public FluxTruncation {
 
   RCP<const mesh::Mesh> mesh_;
   Flux flow_;
-  std::vector<typename Flux::Held> held_;
+  std::vector<typename Flux::Constrained> constrained_;
   AroundCells around_cells_;
   AroundFaces around_faces_;
 };
@@ -211,12 +209,12 @@ class Truncation final : public FluxTruncation {
 }  // namespace
 
 std::unique_ptr<FluxTruncation> make_flux_truncation(RCP<const mesh::Mesh> mesh, const fields::Layout& cells,
-                                                     const fields::Layout& facets, ConstView<char*> held_facets,
+                                                     const fields::Layout& facets, ConstView<char*> constrained_facets,
                                                      HybridFluxParameters parameters) {
   SPREKK_CHECK(mesh::is_simplex(mesh->shape), "the estimate of the error of fluxes is of triangles and tetrahedra");
   return mesh::for_corners(mesh->shape, [&](auto shape) -> std::unique_ptr<FluxTruncation> {
     if constexpr (mesh::is_simplex(shape()))
-      return std::make_unique<Truncation<shape()>>(mesh, Potentials::Layouts{&cells, &facets}, held_facets,
+      return std::make_unique<Truncation<shape()>>(mesh, Potentials::Layouts{&cells, &facets}, constrained_facets,
                                                    std::move(parameters));
     else
       return nullptr;

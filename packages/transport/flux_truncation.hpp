@@ -13,7 +13,7 @@ class FluxTruncation {
  public:
   virtual ~FluxTruncation() = default;
 
-  virtual void set_transmissivity(std::vector<Real> of_local_faces) = 0;
+  virtual void set_transmissivity(FaceTransmissivity present) = 0;
   /// Flows driven by the given potentials, [owned unknown]. Collective.
   virtual HybridFlows flows(const fields::Vector& cells, const fields::Vector& facets) const = 0;
   /// Flows q_i driven by potential differences c_i. For flows q_v of potentials v:
@@ -36,10 +36,10 @@ class FluxTruncation {
                                      const fields::Vector& facets) const = 0;
 };
 
-/// Creates the truncation error. The result holds references to the layouts of cells and facets. `held_facets`: owned
-/// facets with prescribed values. Throws an Error unless the cells are simplices. Collective.
+/// Creates the truncation error. The result holds references to the layouts of cells and facets. `constrained_facets`:
+/// owned facets with prescribed values. Throws an Error unless the cells are simplices. Collective.
 std::unique_ptr<FluxTruncation> make_flux_truncation(RCP<const mesh::Mesh> mesh, const fields::Layout& cells,
-                                                     const fields::Layout& facets, ConstView<char*> held_facets,
+                                                     const fields::Layout& facets, ConstView<char*> constrained_facets,
                                                      HybridFluxParameters parameters);
 
 }  // namespace sprekk::transport

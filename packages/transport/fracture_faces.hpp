@@ -19,8 +19,9 @@ namespace sprekk::transport {
 template <int n>
 using FractureFace = StoredFlow<n, assembly::Slots<assembly::Slot<1 + n, 1>>>;
 
-/// Flow of `Base` times a transmissivity that depends on the widening of the face, m, the last unknown. The matrix T of
-/// `Base` is that of a unit transmissivity.
+/// Flow of `Base` with transmissivities that depend on the widening of the face, m, the last unknown, and on pressures:
+/// those of EndTransmissivities multiply the potential differences of `Base`. The matrix T of `Base` is that of a unit
+/// transmissivity.
 template <class Base>
 struct WideningFace {
   static constexpr int n_ends = Base::n_ends, n = n_ends, m = Base::Columns::size;
@@ -30,22 +31,37 @@ struct WideningFace {
   Base base;
   PresentConduits conduits;
 
+  KOKKOS_INLINE_FUNCTION EndTransmissivities<n> at_ends(int face, const Real (&x)[m + 1]) const {
+    Real rise[n];
+    for (int j = 0; j < n; ++j) rise[j] = x[1 + j] - x[0];
+    return conduits.at_ends(face, x[m], rise);
+  }
   KOKKOS_INLINE_FUNCTION void flow(int face, const Real (&x)[m + 1], Real (&q)[n]) const {
     Real own[m];
     for (int k = 0; k < m; ++k) own[k] = x[k];
-    base.flow(face, own, q);
-    const Real transmissivity = conduits.transmissivity(face, x[m]);
-    for (Real& each : q) each *= transmissivity;
+    base.flow_of(base.at(face).scaled(at_ends(face, x).value), own, q);
   }
   KOKKOS_INLINE_FUNCTION void dflow(int face, const Real (&x)[m + 1], Real (&dq)[n][m + 1]) const {
-    Real own[m], q[n], by_own[n][m];
+    Real own[m], by_own[n][m];
     for (int k = 0; k < m; ++k) own[k] = x[k];
-    base.flow(face, own, q);
-    base.dflow(face, own, by_own);
-    const Real transmissivity = conduits.transmissivity(face, x[m]), by_widening = conduits.dtransmissivity(face, x[m]);
+    const auto t = at_ends(face, x);
+    const auto here = base.at(face);
+    base.dflow_of(here.scaled(t.value), own, by_own);
     for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < m; ++k) dq[i][k] = transmissivity * by_own[i][k];
-      dq[i][m] = by_widening * q[i];
+      for (int k = 0; k < m; ++k) dq[i][k] = by_own[i][k];
+      dq[i][m] = 0;
+    }
+    for (int j = 0; j < n; ++j) {
+      Real only[n] = {}, part[n];
+      only[j] = 1;
+      base.flow_of(here.scaled(only), own, part);
+      for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < n; ++k) {
+          dq[i][0] -= part[i] * t.by_rise[j][k];
+          dq[i][1 + k] += part[i] * t.by_rise[j][k];
+        }
+        dq[i][m] += part[i] * t.by_widening[j];
+      }
     }
   }
   KOKKOS_INLINE_FUNCTION void residual(int face, const Real (&x)[m + 1], Real (&r)[1 + n]) const {

@@ -89,8 +89,7 @@ class FractureFlow final : public assembly::Module,
     for (std::size_t f = 0; f < values.size(); ++f)
       values[f] = std::max(parameters_.faces[f].along.hydraulic_aperture(widening(f)), widest ? open_ : 0);
   }
-  /// Widening changes only couplings of blocks; the block of the pressures remains symmetric.
-  bool symmetric(const assembly::State&) const override { return is_linear() || widens_; }
+  bool symmetric(const assembly::State&) const override { return is_linear(); }
 
   bool constant_load() const override {
     return outflow_.constant_in_time() && std::all_of(parameters_.source.begin(), parameters_.source.end(),
@@ -140,8 +139,8 @@ class FractureFlow final : public assembly::Module,
     assembly::Unknown facets{{"face pressure", fields::Entity::facet, 1, "Pa"}, "pressure", parameters_.alone->row};
     facets.row.push_back({"pressure", conductance});
     facets.balance = true;
-    facets.reactions = {parameters_.outflow.inflows, "", "region_" + parameters_.outflow.inflows,
-                        parameters_.outflow.unit};
+    const auto& inflows = parameters_.outflow.inflows;
+    facets.reactions = {inflows, "", "region_" + inflows, parameters_.outflow.unit, "fracture_" + inflows};
     facets.near_null_space = assembly::NearNullSpace::constants;
     return facets;
   }
@@ -181,8 +180,10 @@ class FractureFlow final : public assembly::Module,
     View<Real*>::HostMirror widening("widening", mesh_->n_fracture_faces());
     if (widens_) Kokkos::deep_copy(widening, state.x[widening_]);
     std::vector<Real> values;
-    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-      values.push_back(parameters_.faces[f].along.hydraulic_aperture(widening(f)));
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+      const auto& along = parameters_.faces[f].along;
+      values.push_back(along.is_sealed(widening(f)) ? 0 : along.hydraulic_aperture(widening(f)));
+    }
     return values;
   }
 
@@ -197,10 +198,15 @@ class FractureFlow final : public assembly::Module,
       Real x[1 + n] = {p(mesh_->facets->fracture_face[f])}, q[n];
       for (int k = 0; k < n; ++k) x[1 + k] = p(mesh_->facets->ridge[f * n + k]);
       const Real u = carried(mesh_->facets->fracture_face[f]);
-      faces_->op().at(f).heavier(change ? change->response.density(u).value : 1).flow(x, q);
-      const Real wider = (widens_ ? parameters_.faces[f].along.transmissivity(widening(f)) : 1) *
-                         (change ? change->response.mobility(u).value : 1);
-      const Real scale = wider / (parameters_.fluid.density(x[0]) * plane.area);
+      auto flow = faces_->op().at(f);
+      if (widens_) {
+        Real rise[n];
+        for (int k = 0; k < n; ++k) rise[k] = x[1 + k] - x[0];
+        flow = flow.scaled(EndTransmissivities<n>(parameters_.faces[f].along, widening(f), rise).value);
+      }
+      flow.heavier(change ? change->response.density(u).value : 1).flow(x, q);
+      const Real scale =
+          (change ? change->response.mobility(u).value : 1) / (parameters_.fluid.density(x[0]) * plane.area);
       for (int i = 0; i < 3; ++i) {
         Real flux = 0;
         for (int k = 0; k < n; ++k) flux += q[k] * plane.d[k][i] * scale;

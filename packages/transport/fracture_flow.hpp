@@ -29,7 +29,7 @@ struct FractureFlowParameters {
   std::vector<Face> faces = {};               ///< [local fracture face]
   std::vector<std::vector<int>> cut_by = {};  ///< [fracture] fractures whose filling divides it; empty with widening
   std::vector<base::Expression> source = {};  ///< [fracture] volume of fluid per area and time, m/s
-  FluxScheme scheme = FluxScheme::rt0;        ///< same as in the rock
+  FluxScheme scheme = FluxScheme::rt0;        ///< rt0, mimetic: p_F is the mean over the face
   laws::Fluid fluid = {};
   std::optional<FluidChange> change = {};  ///< use the flows of ChangedFlow
   std::array<Real, 3> weight{};            ///< rho_0 g, N/m^3

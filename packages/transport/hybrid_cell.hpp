@@ -226,6 +226,13 @@ struct HybridFlow {
     for (Real& each : result.lift) each *= factor;
     return result;
   }
+  /// Returns the flow with the potential difference of each end multiplied by a factor.
+  KOKKOS_INLINE_FUNCTION HybridFlow scaled(const Real (&factor)[n]) const {
+    HybridFlow result = *this;
+    for (auto& row : result.T)
+      for (int j = 0; j < n; ++j) row[j] *= factor[j];
+    return result;
+  }
   /// Computes the outward flow through each end.
   KOKKOS_INLINE_FUNCTION void flow(const Real (&x)[1 + n], Real (&q)[n]) const {
     Real drop[n];
@@ -289,8 +296,17 @@ struct StoredFlow {
     }
     return result;
   }
-  KOKKOS_INLINE_FUNCTION void flow(int e, const Real (&x)[1 + n], Real (&q)[n]) const { at(e).flow(x, q); }
-  KOKKOS_INLINE_FUNCTION void dflow(int e, const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const { at(e).dflow(x, dq); }
+  KOKKOS_INLINE_FUNCTION void flow(int e, const Real (&x)[1 + n], Real (&q)[n]) const { flow_of(at(e), x, q); }
+  KOKKOS_INLINE_FUNCTION void dflow(int e, const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const {
+    dflow_of(at(e), x, dq);
+  }
+  /// flow() and its derivatives with another HybridFlow in place of at().
+  KOKKOS_INLINE_FUNCTION void flow_of(const HybridFlow<n>& here, const Real (&x)[1 + n], Real (&q)[n]) const {
+    here.flow(x, q);
+  }
+  KOKKOS_INLINE_FUNCTION void dflow_of(const HybridFlow<n>& here, const Real (&x)[1 + n], Real (&dq)[n][1 + n]) const {
+    here.dflow(x, dq);
+  }
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[1 + n], Real (&r)[1 + n]) const {
     at(e).residual(x, r);
     for (Real& row : r) row *= rate;

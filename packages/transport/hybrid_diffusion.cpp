@@ -53,6 +53,7 @@ class HybridDiffusion final : public assembly::Module,
     auto facets = cells;
     facets.field = {on_facets, fields::Entity::facet, 1, parameters_.unit};
     facets.near_null_space = assembly::NearNullSpace::constants;
+    facets.reactions.fractures = "fracture_" + parameters_.outflow.inflows;
     const bool stay = parameters_.in_regions || coupled_;
     (stay ? cells.condensed_into : cells.local_group) = stay ? on_facets : field + " in cells";
     d.unknowns = {cells, facets};

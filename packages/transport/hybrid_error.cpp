@@ -19,8 +19,9 @@ class Error final : public HybridError, PlaceSums {
   using InFace = typename Flux::InFace;
 
   Error(RCP<const mesh::Mesh> mesh, const fields::Layout& cells, const fields::Layout& facets,
-        ConstView<char*> held_facets, HybridErrorParameters parameters)
-      : grid_(mesh, cells, facets, held_facets, std::move(parameters.flow)), storage_(std::move(parameters.storage)) {
+        ConstView<char*> constrained_facets, HybridErrorParameters parameters)
+      : grid_(mesh, cells, facets, constrained_facets, std::move(parameters.flow)),
+        storage_(std::move(parameters.storage)) {
     find_before();
     for (LocalIndex c = 0; varies() && c < grid_.mesh->n_owned_cells; ++c)
       grid_.cell_of_component.insert(grid_.cell_of_component.end(), n, c);
@@ -53,15 +54,13 @@ class Error final : public HybridError, PlaceSums {
       of.add_entity(grid_.faces[f], of.in_faces[f], next);
     for (const auto& side : grid_.sides)
       if (side.resistance > 0) of.add_side(side, next);
-    for (LocalIndex f = 0; dim == 2 && f < grid_.mesh->n_owned_fracture_faces; ++f) of.add_two_points(f, next);
-    for (const auto& face : grid_.held_faces)
+    for (const auto& [f, distance] : grid_.flow.parameters().fed) of.add_well(f, distance, next);
+    for (const auto& face : grid_.constrained_faces)
       if (Grid::is_mean(face.of)) ++next;
     for (LocalIndex c = 0; varies() && c < grid_.mesh->n_owned_cells; ++c) of.add_variation(c, next);
     return of.forces();
   }
-  void set_transmissivity(std::vector<Real> of_local_faces) override {
-    grid_.set_transmissivity(std::move(of_local_faces));
-  }
+  void set_transmissivity(FaceTransmissivity present) override { grid_.set_transmissivity(std::move(present)); }
 
  private:
   using Of = Potentials::Of;
@@ -86,12 +85,13 @@ class Error final : public HybridError, PlaceSums {
   }
 
   /// Prescribed values at the places with prescribed potentials. Throws an Error if an expression has no value.
-  std::vector<Real> values_of_held(const Potentials& u, Real t) const {
+  std::vector<Real> values_of_constrained(const Potentials& u, Real t) const {
     std::vector<Real> given;
-    for (const auto& face : grid_.held_faces)
+    for (const auto& face : grid_.constrained_faces)
       for (std::size_t k = face.begin; k < face.end; ++k)
-        given.push_back(u.is_linearized() ? u(Of::facet, grid_.held_places[k].facet)
-                                          : u.of_pressure(grid_.flow.prescribed(face.of, grid_.held_places[k].x, t)));
+        given.push_back(u.is_linearized()
+                            ? u(Of::facet, grid_.constrained_places[k].facet)
+                            : u.of_pressure(grid_.flow.prescribed(face.of, grid_.constrained_places[k].x, t)));
     return given;
   }
 
@@ -107,7 +107,8 @@ class Error final : public HybridError, PlaceSums {
     for (LocalIndex f = 0; f < grid_.mesh->n_owned_fracture_faces; ++f) {
       in_faces.push_back(grid_.flow.in_face(f, u));
       add(grid_.faces[f],
-          grid_.faces[f].flux.potential(in_faces.back(), mean_in_face(f, in_faces.back(), u), weight_in_face(f, u)),
+          grid_.faces[f].flux.potential(in_faces.back(), u(Of::facet, grid_.mesh->facets->fracture_face[f]),
+                                        weight_in_face(f, u)),
           sums);
     }
     for (const auto& side : grid_.sides) {
@@ -119,13 +120,12 @@ class Error final : public HybridError, PlaceSums {
         sum[springs] += side.spring;
         sum[drops] += side.spring * drop;
       }
-      sums[side.of_face.back()][inflow] += q;
     }
     std::vector<Real> given;
-    base::collectively(*grid_.mesh->comm, [&] { given = values_of_held(u, t); });
-    for (std::size_t k = 0; k < grid_.held_places.size(); ++k) {
-      ++sums[grid_.held_places[k].place][held];
-      sums[grid_.held_places[k].place][held_values] += given[k];
+    base::collectively(*grid_.mesh->comm, [&] { given = values_of_constrained(u, t); });
+    for (std::size_t k = 0; k < grid_.constrained_places.size(); ++k) {
+      ++sums[grid_.constrained_places[k].place][constrained];
+      sums[grid_.constrained_places[k].place][constrained_values] += given[k];
     }
     grid_.places.sum_over_ranks(sums);
     if (saved) *saved = sums;
@@ -137,12 +137,12 @@ class Error final : public HybridError, PlaceSums {
       fluxes.in_faces.push_back(grid_.faces[f].flux.flux(in_faces[f], weight_in_face(f, u)));
     for (int k = 0; k < Grid::n_sweeps; ++k) improve(fluxes, in_cells, sums, s);
     auto result = errors(u, fluxes, in_cells, in_faces, sums, s);
-    for (const auto& face : grid_.held_faces) {
+    for (const auto& face : grid_.constrained_faces) {
       if (!Grid::is_mean(face.of)) continue;
       const Real q = face.of.in_rock ? in_cells[face.of.entity][Flux::opposite(face.of.end)]
                                      : in_faces[face.of.entity][Flux::opposite_ridge(face.of.end)];
-      Real missed = -u(Of::facet, grid_.held_places[face.begin].facet);
-      for (std::size_t k = face.begin; k < face.end; ++k) missed += grid_.held_places[k].share * given[k];
+      Real missed = -u(Of::facet, grid_.constrained_places[face.begin].facet);
+      for (std::size_t k = face.begin; k < face.end; ++k) missed += grid_.constrained_places[k].share * given[k];
       result.error.push_back(u.is_linearized() ? -q : missed);
       result.whole.push_back(0);
     }
@@ -190,8 +190,8 @@ class Error final : public HybridError, PlaceSums {
     std::vector<std::array<Real, 2>> of_rock(sums.size());  // rock's part of means: weight, weighted value
     const auto own = [&](int place) {
       const auto& sum = sums[place];
-      if (sum[held] == 0) return std::array{sum[weight], sum[weighted] / sum[weight]};
-      return std::array{fixed * (sum[weight] + sum[springs]), sum[held_values] / sum[held]};
+      if (sum[constrained] == 0) return std::array{sum[weight], sum[weighted] / sum[weight]};
+      return std::array{fixed * (sum[weight] + sum[springs]), sum[constrained_values] / sum[constrained]};
     };
     for (const auto& side : grid_.sides)
       for (std::size_t k = 0; k < side.of_cell.size(); ++k) {
@@ -217,7 +217,7 @@ class Error final : public HybridError, PlaceSums {
         const auto [w, value] = own(side.of_cell[k]);
         const Real c = sum[springs], beside = s[side.of_face[k]];
         auto& of = beside_fractures[side.of_cell[k]];
-        of[0] += sum[held] > 0 ? value : (w * value + c * beside + sum[drops]) / (w + c);
+        of[0] += sum[constrained] > 0 ? value : (w * value + c * beside + sum[drops]) / (w + c);
         ++of[1];
       }
     grid_.places.sum_over_ranks(beside_fractures);  // a cell may touch a fracture with one corner only
@@ -248,7 +248,7 @@ class Error final : public HybridError, PlaceSums {
     });
     grid_.places.sum_over_ranks(slopes);
     for (std::size_t p = 0; p < s.size(); ++p)
-      if (sums[p][held] == 0 && grid_.stiffness[p][0] > 0)
+      if (sums[p][constrained] == 0 && grid_.stiffness[p][0] > 0)
         s[p] -= Grid::relaxation * slopes[p][0] / grid_.stiffness[p][0];
   }
 
@@ -266,25 +266,19 @@ class Error final : public HybridError, PlaceSums {
     for (const auto& side : grid_.sides)
       if (side.resistance > 0)
         add_side(side, in_cells[side.cell][Flux::opposite(side.local_face)] / grid_.area(side), s, result);
-    for (LocalIndex f = 0; dim == 2 && f < grid_.mesh->n_owned_fracture_faces; ++f)
-      add_two_points(f, in_faces[f], sums[grid_.faces[f].place.back()][inflow], u.is_linearized(), result.error);
+    for (const auto& [f, distance] : grid_.flow.parameters().fed)
+      add_well(f, distance, in_faces[f], u.is_linearized(), result.error);
     result.whole.resize(result.error.size(), 0);
     return result;
   }
 
-  /// Adds the components of two-point fluxes (2D). The first is due to the inflow into the face. In a face with a well,
-  /// the distance of the well from the centre changes the resistance to both ends; this gives two further components.
-  void add_two_points(LocalIndex f, const typename InFace::Flows& q, Real inflow, bool is_linearized,
-                      std::vector<Real>& error) const {
-    const auto well = grid_.flow.parameters().fed.find(f);
-    const bool fed = well != grid_.flow.parameters().fed.end();
-    error.push_back(std::sqrt(grid_.two_point_resistance(f)) * (fed ? inflow : q[0] + q[1]));
-    if (!fed) return;
-    for (int end = 0; end < 2; ++end) {  // the flow through end k is stored at the opposite corner, 1 - k
-      const Real nearer = grid_.nearer(f, end, well->second);
-      const Real factor = std::sqrt(std::abs(well->second) / grid_.flow.parameters().transmissivity[f]);
-      error.push_back((is_linearized && nearer < 0 ? -1 : 1) * factor * q[Flux::opposite_ridge(end)]);
-    }
+  /// Adds the components of a fracture face with a well at a distance from its centre (2D), one for each end.
+  void add_well(LocalIndex f, Real distance, const typename InFace::Flows& q, bool is_linearized,
+                std::vector<Real>& error) const {
+    const Real factor = std::sqrt(std::abs(distance) / grid_.flow.parameters().transmissivity[f]);
+    for (int end = 0; end < 2; ++end)
+      error.push_back((is_linearized && grid_.nearer(f, end, distance) < 0 ? -1 : 1) * factor *
+                      q[Flux::opposite_ridge(end)]);
   }
 
   void add_side(const Side& side, Real q, const std::vector<Real>& s, Parts& parts) const {
@@ -313,13 +307,6 @@ class Error final : public HybridError, PlaceSums {
     return w;
   }
 
-  /// Mean of the quadratic potential along a face. In 2D the potential is fitted to the potentials of both ends.
-  Real mean_in_face(LocalIndex f, const typename InFace::Flows& q, const Potentials& u) const {
-    if constexpr (dim == 3) return u(Of::facet, grid_.mesh->facets->fracture_face[f]);
-    const auto* ridge = &grid_.mesh->facets->ridge[f * dim];
-    return (u(Of::facet, ridge[0]) + u(Of::facet, ridge[1])) / 2 + grid_.two_point_resistance(f) / 2 * (q[0] + q[1]);
-  }
-
   Grid grid_;
   std::vector<Real> storage_;  // see HybridErrorParameters
   /// [owned cell] variation of the potential in the last two states; before the first step only the initial one
@@ -330,12 +317,12 @@ class Error final : public HybridError, PlaceSums {
 }  // namespace
 
 std::unique_ptr<HybridError> make_hybrid_error(RCP<const mesh::Mesh> mesh, const fields::Layout& cells,
-                                               const fields::Layout& facets, ConstView<char*> held_facets,
+                                               const fields::Layout& facets, ConstView<char*> constrained_facets,
                                                HybridErrorParameters parameters) {
   SPREKK_CHECK(mesh::is_simplex(mesh->shape), "the estimate of the error of flow is of triangles and tetrahedra");
   return mesh::for_corners(mesh->shape, [&](auto shape) -> std::unique_ptr<HybridError> {
     if constexpr (mesh::is_simplex(shape()))
-      return std::make_unique<Error<shape()>>(mesh, cells, facets, held_facets, std::move(parameters));
+      return std::make_unique<Error<shape()>>(mesh, cells, facets, constrained_facets, std::move(parameters));
     else
       return nullptr;
   });

@@ -28,7 +28,7 @@ struct HybridErrorParameters {
 ///
 /// Further components contribute to functionals only, not to the energy:
 ///
-/// - 2D: two-point fluxes along fractures act like a resistance h/(6 T) between a face and its centre.
+/// - 2D: the distance of a well from the centre of its fracture face changes the resistance to both ends.
 /// - On the boundary the pressure at the centre of a face differs from its mean. The factor of the adjoint solution is
 ///   its flow there.
 /// - The source minus the storage rate varies in a cell. Its variation is multiplied by that of the adjoint potential.
@@ -60,13 +60,13 @@ class HybridError {
   /// the terms of v where a potential is prescribed. The reconstruction of v starts from the means of v alone, with any
   /// resistance. Collective.
   virtual Forces forces(const std::vector<Real>& e) const = 0;
-  virtual void set_transmissivity(std::vector<Real> of_local_faces) = 0;
+  virtual void set_transmissivity(FaceTransmissivity present) = 0;
 };
 
-/// Creates the estimator. The result holds references to the layouts of cells and facets. `held_facets`: owned facets
-/// with prescribed values. Throws an Error unless the cells are simplices. Collective.
+/// Creates the estimator. The result holds references to the layouts of cells and facets. `constrained_facets`: owned
+/// facets with prescribed values. Throws an Error unless the cells are simplices. Collective.
 std::unique_ptr<HybridError> make_hybrid_error(RCP<const mesh::Mesh> mesh, const fields::Layout& cells,
-                                               const fields::Layout& facets, ConstView<char*> held_facets,
+                                               const fields::Layout& facets, ConstView<char*> constrained_facets,
                                                HybridErrorParameters parameters);
 
 }  // namespace sprekk::transport

@@ -19,10 +19,16 @@
 
 namespace sprekk::transport {
 
+/// Transmissivity of local fracture faces, m^3/(Pa s), and factors of the potential differences to their ridges,
+/// [face * d + ridge]; no factors: 1.
+struct FaceTransmissivity {
+  std::vector<Real> of_faces, at_ridges = {};
+};
+
 struct HybridFluxParameters {
-  HybridDiffusionParameters rock = {};                  ///< as in the module
-  std::vector<Real> transmissivity = {};                ///< [local fracture face] m^3/(Pa s)
-  std::vector<assembly::DirichletCondition> held = {};  ///< conditions that prescribe values on facets
+  HybridDiffusionParameters rock = {};                         ///< as in the module
+  std::vector<Real> transmissivity = {};                       ///< [local fracture face] m^3/(Pa s)
+  std::vector<assembly::DirichletCondition> constrained = {};  ///< conditions that prescribe values on facets
   std::map<LocalIndex, Real> fed = {};  ///< 2D: [fracture face with a well] distance of the well from the centre, m
 };
 
@@ -113,8 +119,9 @@ class HybridFlux {
     }
   }
 
-  void set_transmissivity(std::vector<Real> of_local_faces) {
-    parameters_.transmissivity = std::move(of_local_faces);
+  void set_transmissivity(FaceTransmissivity present) {
+    parameters_.transmissivity = std::move(present.of_faces);
+    at_ridges_ = std::move(present.at_ridges);
     find_faces();
   }
 
@@ -148,8 +155,10 @@ class HybridFlux {
   }
   typename InFace::Flows in_face(LocalIndex f, const std::array<Real, dim>& drops) const {
     typename InFace::Flows q{};
-    for (int k = 0; k < dim; ++k)
-      for (int l = 0; l < dim; ++l) q[opposite_ridge(l)] += faces_[f].plane.T[l][k] * drops[k];
+    for (int k = 0; k < dim; ++k) {
+      const Real drop = at_ridges_.empty() ? drops[k] : at_ridges_[f * dim + k] * drops[k];
+      for (int l = 0; l < dim; ++l) q[opposite_ridge(l)] += faces_[f].plane.T[l][k] * drop;
+    }
     return q;
   }
   /// Outward flows of a state.
@@ -166,7 +175,7 @@ class HybridFlux {
   }
 
   /// Face of a cell, or end of a fracture face, with a prescribed potential.
-  struct Held {
+  struct Constrained {
     bool in_rock;
     LocalIndex entity;  ///< cell or fracture face
     int end;            ///< face of the cell, or ridge
@@ -174,7 +183,7 @@ class HybridFlux {
     int condition;
   };
   /// Ends with a prescribed potential. `mask`: [owned facet] nonzero if prescribed. Collective.
-  std::vector<Held> held(ConstView<char*> mask) const {
+  std::vector<Constrained> constrained(ConstView<char*> mask) const {
     fields::Vector owned(layouts_[1]->owned()), all(layouts_[1]->ghosted());
     {
       const auto from = base::to_host(mask);
@@ -182,20 +191,21 @@ class HybridFlux {
       for (std::size_t k = 0; k < from.extent(0); ++k) to(k, 0) = from(k);
     }
     all.doImport(owned, *layouts_[1]->import(), Tpetra::REPLACE);
-    const auto is_held = all.getLocalViewHost(Tpetra::Access::ReadOnly);
-    std::vector<Held> result;
+    const auto is_constrained = all.getLocalViewHost(Tpetra::Access::ReadOnly);
+    std::vector<Constrained> result;
     for (const auto& face : mesh_->boundary_faces) {
       const LocalIndex facet = facet_of_cell(face.cell, face.local_face);
-      if (!face.owned || is_held(facet, 0) == 0) continue;
+      if (!face.owned || is_constrained(facet, 0) == 0) continue;
       const int condition = condition_of(face.boundary, mesh_->cell_region[face.cell], -1);
-      if (condition < static_cast<int>(parameters_.held.size()))  // else another condition applies
+      if (condition < static_cast<int>(parameters_.constrained.size()))  // else another condition applies
         result.push_back({true, face.cell, face.local_face, facet, condition});
     }
     std::map<std::pair<LocalIndex, int>, int> conditions;  // [end]; several boundaries may share an end
     for (const auto& rim : mesh_->facets->rims) {
-      if (rim.face >= mesh_->n_owned_fracture_faces || is_held(facet_of_face(rim.face, rim.ridge), 0) == 0) continue;
+      if (rim.face >= mesh_->n_owned_fracture_faces || is_constrained(facet_of_face(rim.face, rim.ridge), 0) == 0)
+        continue;
       const int condition = condition_of(rim.boundary, -1, mesh_->fracture_faces[rim.face].fracture);
-      if (condition == static_cast<int>(parameters_.held.size())) continue;  // another condition applies
+      if (condition == static_cast<int>(parameters_.constrained.size())) continue;  // another condition applies
       const auto [known, is_new] = conditions.emplace(std::pair(rim.face, rim.ridge), condition);
       if (!is_new) known->second = std::min(known->second, condition);
     }
@@ -206,36 +216,38 @@ class HybridFlux {
 
   /// Point of a prescribed end, halfway between corners a and b of the cell or the fracture face. `share`: weight in
   /// the mean of a quadratic function over the end.
-  struct HeldPoint {
+  struct ConstrainedPoint {
     int a, b;
     mesh::Vector x;
     Real share;
   };
-  std::vector<HeldPoint> points(const Held& held) const {
-    std::vector<HeldPoint> result;
+  std::vector<ConstrainedPoint> points(const Constrained& constrained) const {
+    std::vector<ConstrainedPoint> result;
     const auto add = [&](int a, int b, LocalIndex at_a, LocalIndex at_b, Real share) {
       mesh::Vector x{};
       for (int i = 0; i < dim; ++i)
         x[i] = (mesh_->coordinates[at_a * dim + i] + mesh_->coordinates[at_b * dim + i]) / 2;
       result.push_back({a, b, x, share});
     };
-    if (held.in_rock) {
-      const auto& corners = mesh::face_nodes(shape)[held.end];
+    if (constrained.in_rock) {
+      const auto& corners = mesh::face_nodes(shape)[constrained.end];
       for (int a = 0; a < dim; ++a)
         for (int b = a; b < dim; ++b) {
           const Real share = a == b ? (dim == 2 ? 1.0 / 6 : 0) : (dim == 2 ? 2.0 / 3 : 1.0 / 3);
-          add(corners[a], corners[b], node(held.entity, corners[a]), node(held.entity, corners[b]), share);
+          add(corners[a], corners[b], node(constrained.entity, corners[a]), node(constrained.entity, corners[b]),
+              share);
         }
       return result;
     }
-    const auto& nodes = mesh_->fracture_faces[held.entity].nodes[mesh::minus];
-    const int last = dim == 2 ? held.end : (held.end + 1) % 3;
-    for (const auto& [a, b] : {std::pair(held.end, held.end), std::pair(held.end, last), std::pair(last, last)})
+    const auto& nodes = mesh_->fracture_faces[constrained.entity].nodes[mesh::minus];
+    const int last = dim == 2 ? constrained.end : (constrained.end + 1) % 3;
+    for (const auto& [a, b] :
+         {std::pair(constrained.end, constrained.end), std::pair(constrained.end, last), std::pair(last, last)})
       add(a, b, nodes[a], nodes[b], a == b ? 1.0 / 6 : 2.0 / 3);
     return result;
   }
-  Real prescribed(const Held& held, const mesh::Vector& x, Real t) const {
-    return (*parameters_.held[held.condition].values[0])(x, t);
+  Real prescribed(const Constrained& constrained, const mesh::Vector& x, Real t) const {
+    return (*parameters_.constrained[constrained.condition].values[0])(x, t);
   }
 
  private:
@@ -269,7 +281,7 @@ class HybridFlux {
   }
   /// First condition on a face of the rock (fracture < 0), or on an end of a fracture.
   int condition_of(int boundary, int region, int fracture) const {
-    const auto& all = parameters_.held;
+    const auto& all = parameters_.constrained;
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) {
       if (one.boundary != boundary) return false;
       return fracture < 0 ? one.fracture < 0 && (one.region < 0 || one.region == region)
@@ -283,6 +295,7 @@ class HybridFlux {
   HybridFluxParameters parameters_;
   std::vector<Cell> cells_;
   std::vector<Face> faces_;
+  std::vector<Real> at_ridges_;                      // see FaceTransmissivity
   std::unordered_map<LocalIndex, Real> resistance_;  // [cell * n + face] Pa s/m^3
 };
 

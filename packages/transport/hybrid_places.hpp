@@ -15,7 +15,7 @@ namespace sprekk::transport {
 
 /// Sums at a place, over the surrounding cells, faces and sides.
 struct PlaceSums {
-  enum Sum { weight, weighted, held, held_values, springs, drops, sides, inflow, n_sums };
+  enum Sum { weight, weighted, constrained, constrained_values, springs, drops, sides, n_sums };
   using Sums = std::vector<std::array<Real, n_sums>>;
 };
 
@@ -48,15 +48,15 @@ struct HybridPlaces {
     Real spring;                                         // area / R
   };
   /// Place with a prescribed potential.
-  struct HeldPlace {
+  struct ConstrainedPlace {
     int place;
     mesh::Vector x;
     LocalIndex facet;
     Real share;  // weight in the mean over its face
   };
-  /// End with a prescribed potential. Its places are held_places[begin] to held_places[end - 1].
-  struct HeldFace {
-    typename Flux::Held of;
+  /// End with a prescribed potential. Its places are constrained_places[begin] to constrained_places[end - 1].
+  struct ConstrainedFace {
+    typename Flux::Constrained of;
     std::size_t begin, end;
   };
 
@@ -67,29 +67,28 @@ struct HybridPlaces {
   std::vector<Entity<InFace>> faces;
   std::vector<Side> sides;
   Numbers stiffness;  // [place] scaling of Jacobi steps
-  std::vector<HeldPlace> held_places;
-  std::vector<HeldFace> held_faces;
+  std::vector<ConstrainedPlace> constrained_places;
+  std::vector<ConstrainedFace> constrained_faces;
   std::vector<LocalIndex> cell_of_component;
   std::size_t n_of_energy = 0;  // leading components of the energy
 
   /// Collective.
   HybridPlaces(RCP<const mesh::Mesh> in, const fields::Layout& of_cells, const fields::Layout& of_facets,
-               ConstView<char*> held_facets, HybridFluxParameters parameters)
+               ConstView<char*> constrained_facets, HybridFluxParameters parameters)
       : mesh(in), flow(in, {&of_cells, &of_facets}, std::move(parameters)) {
     find_cells();
     find_faces();
     find_sides();
     join_places();
     n_of_energy = cell_of_component.size();
-    for (LocalIndex f = 0; dim == 2 && f < mesh->n_owned_fracture_faces; ++f)
-      cell_of_component.insert(cell_of_component.end(), flow.parameters().fed.count(f) ? 3 : 1,
-                               mesh->fracture_faces[f].cell[mesh::minus]);
-    find_held(held_facets);
+    for (const auto& [f, distance] : flow.parameters().fed)
+      cell_of_component.insert(cell_of_component.end(), 2, mesh->fracture_faces[f].cell[mesh::minus]);
+    find_constrained(constrained_facets);
     places.close(mesh->comm);
     find_stiffness();
   }
-  void set_transmissivity(std::vector<Real> of_local_faces) {
-    flow.set_transmissivity(std::move(of_local_faces));
+  void set_transmissivity(FaceTransmissivity present) {
+    flow.set_transmissivity(std::move(present));
     for (LocalIndex f = 0; f < mesh->n_owned_fracture_faces; ++f) {
       faces[f].flux = flow.face(f).flux;
       faces[f].weight = weight_of_face(f);
@@ -119,10 +118,6 @@ struct HybridPlaces {
     return values;
   }
   Real area(const Side& side) const { return mesh->fracture_faces[side.face].area; }
-  /// Resistance of two-point fluxes in 2D, L/(6 T) with the length L.
-  Real two_point_resistance(LocalIndex f) const {
-    return mesh->fracture_faces[f].area / (6 * flow.parameters().transmissivity[f]);
-  }
   /// Distance by which a well is nearer to an end of a face than the face centre is; negative: farther.
   Real nearer(LocalIndex f, int end, Real distance) const {
     Real towards = 0;
@@ -153,7 +148,7 @@ struct HybridPlaces {
   }
 
   /// Returns whether the facet unknown is a mean over the end, i.e. whether the end is not a point.
-  static bool is_mean(const typename Flux::Held& held) { return held.in_rock || dim == 3; }
+  static bool is_mean(const typename Flux::Constrained& constrained) { return constrained.in_rock || dim == 3; }
 
  private:
   /// Global numbers of places: rock nodes; midpoints of rock edges; fracture points; midpoints of fracture edges; in 2D
@@ -266,17 +261,18 @@ struct HybridPlaces {
     stiffness = std::move(sums);
   }
 
-  void find_held(ConstView<char*> held_facets) {
-    for (const auto& held : flow.held(held_facets)) {
-      const auto begin = held_places.size();
-      for (const auto& point : flow.points(held)) {
-        const int place = held.in_rock ? cells[held.entity].place[InCell::place(point.a, point.b)]
-                                       : faces[held.entity].place[InFace::place(point.a, point.b)];
-        held_places.push_back({place, point.x, held.facet, point.share});
+  void find_constrained(ConstView<char*> constrained_facets) {
+    for (const auto& constrained : flow.constrained(constrained_facets)) {
+      const auto begin = constrained_places.size();
+      for (const auto& point : flow.points(constrained)) {
+        const int place = constrained.in_rock ? cells[constrained.entity].place[InCell::place(point.a, point.b)]
+                                              : faces[constrained.entity].place[InFace::place(point.a, point.b)];
+        constrained_places.push_back({place, point.x, constrained.facet, point.share});
       }
-      held_faces.push_back({held, begin, held_places.size()});
-      if (is_mean(held))
-        cell_of_component.push_back(held.in_rock ? held.entity : mesh->fracture_faces[held.entity].cell[mesh::minus]);
+      constrained_faces.push_back({constrained, begin, constrained_places.size()});
+      if (is_mean(constrained))
+        cell_of_component.push_back(constrained.in_rock ? constrained.entity
+                                                        : mesh->fracture_faces[constrained.entity].cell[mesh::minus]);
     }
   }
 };

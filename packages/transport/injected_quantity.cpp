@@ -6,14 +6,14 @@ namespace sprekk::transport {
 
 /// | symbol        | shape        | unit       |                                          |
 /// | row, face     | [connection] | -          | of p and u; fracture face, -1 for rock   |
-/// | held          | [connection] | -          | the pressure of the well is prescribed, else the rate |
+/// | constrained   | [connection] | -          | the pressure of the well is prescribed, else the rate |
 /// | prescribes        | [connection] | -          | v is known                               |
 /// | index         | [connection] | m^3/(Pa s) | W; with conduits divided by the transmissivity |
 /// | driver        | [connection] | Pa or m^3/s | p_w or q                                |
 /// | value         | [connection] | U          | v                                        |
 struct InjectedQuantity::Kernel {
   ConstView<LocalIndex*> row, face;
-  ConstView<char*> held, prescribes;
+  ConstView<char*> constrained, prescribes;
   ConstView<Real*> index, driver, value, p, u, widening;
   PresentConduits conduits;
   laws::Fluid fluid;
@@ -26,7 +26,7 @@ struct InjectedQuantity::Kernel {
   }
   KOKKOS_INLINE_FUNCTION Real conductance(int k) const { return unchanged(k) * change.value(row(k)); }
   KOKKOS_INLINE_FUNCTION Real drop(int k) const { return fluid.drop(driver(k), p(row(k)), 0); }
-  KOKKOS_INLINE_FUNCTION Real flow(int k) const { return held(k) ? conductance(k) * drop(k) : driver(k); }
+  KOKKOS_INLINE_FUNCTION Real flow(int k) const { return constrained(k) ? conductance(k) * drop(k) : driver(k); }
   KOKKOS_INLINE_FUNCTION bool counts(int k) const { return prescribes(k) && flow(k) > 0; }
   KOKKOS_INLINE_FUNCTION Real rise(int k) const { return capacity * (u(row(k)) - value(k)); }
 };
@@ -60,7 +60,7 @@ void InjectedQuantity::bind(const assembly::Context& context, int pressure, int 
   row_ = of_owned(rows_);
   face_ = of_owned(faces_);
   index_ = of_owned(indices_);
-  held_ = of_owned(by_pressure_);
+  constrained_ = of_owned(by_pressure_);
   conduit_ = assembly::to_device(conduits, "conduits");
   if (!conduits.empty()) widening_ = context.field("widening");
   set(std::vector<Control>(rows_.size()));
@@ -83,7 +83,7 @@ void InjectedQuantity::set(const std::vector<Control>& controls) {
 InjectedQuantity::Kernel InjectedQuantity::kernel(const assembly::State& state) const {
   return {row_,
           face_,
-          held_,
+          constrained_,
           prescribes_,
           index_,
           driver_,
@@ -117,7 +117,7 @@ void InjectedQuantity::add_jacobian(const assembly::State& state, fields::BlockM
         if (!kernel.counts(k)) return;
         const LocalIndex row = kernel.row(k);
         add_entry(own, row, row, kernel.capacity * kernel.flow(k));
-        if (kernel.held(k))
+        if (kernel.constrained(k))
           add_entry(by_pressure, row, row,
                     kernel.conductance(k) * kernel.fluid.ddrop_db(kernel.driver(k), kernel.p(row), 0) * kernel.rise(k));
       });
@@ -125,7 +125,7 @@ void InjectedQuantity::add_jacobian(const assembly::State& state, fields::BlockM
     const auto by_changing = J(carried_, changing_)->getLocalMatrixDevice();
     Kokkos::parallel_for(
         "injected quantity", all, KOKKOS_LAMBDA(int k) {
-          if (!kernel.counts(k) || !kernel.held(k)) return;
+          if (!kernel.counts(k) || !kernel.constrained(k)) return;
           const LocalIndex row = kernel.row(k);
           add_entry(by_changing, row, row,
                     kernel.unchanged(k) * kernel.change.slope(row) * kernel.drop(k) * kernel.rise(k));
@@ -135,7 +135,7 @@ void InjectedQuantity::add_jacobian(const assembly::State& state, fields::BlockM
   const auto by_widening = J(carried_, widening_)->getLocalMatrixDevice();
   Kokkos::parallel_for(
       "injected quantity", all, KOKKOS_LAMBDA(int k) {
-        if (!kernel.counts(k) || !kernel.held(k)) return;
+        if (!kernel.counts(k) || !kernel.constrained(k)) return;
         const LocalIndex face = kernel.face(k);
         add_entry(by_widening, kernel.row(k), face,
                   kernel.index(k) * kernel.conduits.dtransmissivity(face, kernel.widening(face)) *

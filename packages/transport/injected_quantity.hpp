@@ -45,7 +45,7 @@ class InjectedQuantity {
   std::vector<Real> indices_;
   std::vector<char> by_pressure_, owned_;
   ConstView<LocalIndex*> row_, face_;
-  ConstView<char*> held_, prescribes_;
+  ConstView<char*> constrained_, prescribes_;
   ConstView<Real*> index_, driver_, value_;
   ConstView<laws::Conduit*> conduit_;
 };

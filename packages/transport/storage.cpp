@@ -52,24 +52,26 @@ struct StorageCell {
   }
 };
 
-/// Storage in a fracture face with the aperture a = max(a_0 + b, a_min). The widening b, m, is the second unknown:
-/// r = rate |f| (a e - a_old e_old).
+/// Storage in a fracture face with the volume of fluid per area a = max(a_0 + s b, a_min). The widening b, m, is the
+/// second unknown: r = rate |f| (a e - a_old e_old).
 ///
 /// | gained   | [owned face, 2] | Pa, m | p_old minus the initial p; b_old                           |
 /// | minimum    | [local face]    | m     | a_min                                                      |
+/// | share      | [local face]    | -     | s                                                          |
 struct StorageFace : StorageCell {
   using Columns = assembly::Slots<assembly::Slot<1, 1>, assembly::Slot<1, 1>>;
   using Rows = assembly::Slots<assembly::Slot<1, 1>>;
-  ConstView<Real*> minimum;
+  ConstView<Real*> minimum, share;
 
-  KOKKOS_INLINE_FUNCTION bool is_wide(int e, Real widening) const { return room(e) + widening > minimum(e); }
+  KOKKOS_INLINE_FUNCTION bool is_wide(int e, Real widening) const { return room(e) + share(e) * widening > minimum(e); }
   KOKKOS_INLINE_FUNCTION Real aperture(int e, Real widening) const {
-    return is_wide(e, widening) ? room(e) + widening : minimum(e);
+    return is_wide(e, widening) ? room(e) + share(e) * widening : minimum(e);
   }
   KOKKOS_INLINE_FUNCTION void residual(int e, const Real (&x)[2], Real (&r)[1]) const {
     const Real old = initial(e) + gained(e, 0), step = x[0] - initial(e) - gained(e, 0);
     const Real a_old = aperture(e, gained(e, 1));
-    const Real opened = is_wide(e, x[1]) && is_wide(e, gained(e, 1)) ? x[1] - gained(e, 1) : aperture(e, x[1]) - a_old;
+    const Real opened =
+        is_wide(e, x[1]) && is_wide(e, gained(e, 1)) ? share(e) * (x[1] - gained(e, 1)) : aperture(e, x[1]) - a_old;
     const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * step);
     r[0] = volume(e) * rate * (a_old * fluid.density(old) * denser + opened * fluid.density(x[0]));
   }
@@ -81,7 +83,7 @@ struct StorageFace : StorageCell {
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[2], Real (&J)[1][2]) const {
     const Real density = volume(e) * rate * fluid.density(x[0]);
-    J[0][1] = is_wide(e, x[1]) ? density : 0;
+    J[0][1] = is_wide(e, x[1]) ? share(e) * density : 0;
     J[0][0] = density * aperture(e, x[1]) * fluid.compressibility;
   }
 };
@@ -121,6 +123,7 @@ struct Stored {
   Real initial;
   Real carried = 0;  ///< initial value of the field that changes the fluid
   Real minimum = 0;  ///< residual aperture of a fracture, m
+  Real share = 1;    ///< see FractureStorageParameters
 };
 
 /// Computes the storage data of the entities of a loop, in their order.
@@ -155,13 +158,14 @@ class Storage final : public assembly::Module,
   }
 
   void bind(const assembly::Context& context) override {
-    std::vector<Real> volume, room, growth, initial, minimum;
+    std::vector<Real> volume, room, growth, initial, minimum, share;
     for (const auto& stored : find_(*context.mesh())) {
       volume.push_back(stored.volume);
       room.push_back(stored.capacity.room);
       growth.push_back(stored.capacity.growth);
       initial.push_back(stored.initial);
       minimum.push_back(stored.minimum);
+      share.push_back(stored.share);
       carried_.push_back(stored.carried);
       largest_ = std::max(largest_, std::abs(stored.initial));
     }
@@ -169,7 +173,10 @@ class Storage final : public assembly::Module,
     op_.room = assembly::to_device(room, "room");
     op_.growth = assembly::to_device(growth, "growth");
     op_.initial = assembly::to_device(initial, "initial values");
-    if constexpr (m == 2) op_.minimum = assembly::to_device(minimum, "residual aperture");
+    if constexpr (m == 2) {
+      op_.minimum = assembly::to_device(minimum, "residual aperture");
+      op_.share = assembly::to_device(share, "share");
+    }
     std::vector<int> columns;
     for (const auto& name : this->columns()) columns.push_back(context.field(name));
     assembler_ =
@@ -284,7 +291,8 @@ std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameter
                         .capacity = {.room = parameters.aperture[f], .growth = 0},
                         .initial = mean(face, parameters.initial),
                         .carried = parameters.change ? mean(face, parameters.change->initial) : 0,
-                        .minimum = parameters.minimum[f]});
+                        .minimum = parameters.minimum[f],
+                        .share = parameters.share.empty() ? 1 : parameters.share[f]});
     }
     return stored;
   };

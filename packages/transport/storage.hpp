@@ -39,7 +39,8 @@ struct FractureStorageParameters {
   std::vector<Real> minimum = {};   ///< [local fracture face] residual aperture, m
   laws::Fluid fluid = {};
   base::Expression initial = 0;  ///< pressure at the start, Pa
-  bool widens = false;           ///< adds the field "widening" of FractureOpening to the aperture
+  bool widens = false;           ///< adds the field "widening" of FractureOpening, times `share`, to the aperture
+  std::vector<Real> share = {};  ///< [local fracture face] share of a widening that the fluid fills
   std::optional<FluidChange> change = {};
 };
 

@@ -22,7 +22,7 @@ struct TransposedForm : PlaceSums {
   const Sums& sums;  // of the state
   std::vector<typename InCell::Flows> in_cells;
   std::vector<typename InFace::Flows> in_faces;
-  std::vector<std::array<Real, 2>> at_places;  // of the values; of the total inflow of a face, at its last place
+  typename Grid::Numbers at_places;
   using Next = std::vector<Real>::const_iterator;
 
   TransposedForm(const HybridPlaces<shape>& of, const Sums& of_state)
@@ -54,21 +54,11 @@ struct TransposedForm : PlaceSums {
       }
     }
   }
-  /// Transposes the components of two-point fluxes.
-  void add_two_points(LocalIndex f, Next& next) {
-    const auto well = grid.flow.parameters().fed.find(f);
-    const bool fed = well != grid.flow.parameters().fed.end();
-    const Real e = *next++ * std::sqrt(grid.two_point_resistance(f));
-    if (fed) at_places[grid.faces[f].place.back()][1] += e;
-    for (int k = 0; k < 2; ++k) {
-      if (!fed) {
-        in_faces[f][k] += e;
-        continue;
-      }
-      const Real nearer = grid.nearer(f, k, well->second);
-      in_faces[f][Flux::opposite_ridge(k)] +=
-          *next++ * (nearer < 0 ? -1 : 1) * std::sqrt(std::abs(nearer) / grid.flow.parameters().transmissivity[f]);
-    }
+  /// Transposes the components of a fracture face with a well at a distance from its centre.
+  void add_well(LocalIndex f, Real distance, Next& next) {
+    const Real factor = std::sqrt(std::abs(distance) / grid.flow.parameters().transmissivity[f]);
+    for (int end = 0; end < 2; ++end)
+      in_faces[f][Flux::opposite_ridge(end)] += *next++ * (grid.nearer(f, end, distance) < 0 ? -1 : 1) * factor;
   }
   void add_variation(LocalIndex c, Next& next) {
     const auto& cell = grid.cells[c];
@@ -83,10 +73,10 @@ struct TransposedForm : PlaceSums {
 
   /// Transposes one Jacobi step: s - relaxation/stiffness * slope of the energy. Collective.
   void transpose_improvement() {
-    std::vector<std::array<Real, 2>> more(at_places.size());
+    typename Grid::Numbers more(at_places.size());
     std::vector<Real> y(at_places.size(), 0);
     for (std::size_t p = 0; p < y.size(); ++p)
-      if (sums[p][held] == 0 && grid.stiffness[p][0] > 0)
+      if (sums[p][constrained] == 0 && grid.stiffness[p][0] > 0)
         y[p] = -Grid::relaxation * at_places[p][0] / grid.stiffness[p][0];
     const auto add = [&](const auto& entity, auto& on_flows) {
       using In = std::decay_t<decltype(entity.flux)>;
@@ -120,7 +110,7 @@ struct TransposedForm : PlaceSums {
     Real on_mean = 0;
     for (std::size_t j = 0; j < shares.size(); ++j) {
       const auto& sum = sums[entity.place[j]];
-      if (sum[held] == 0) shares[j] = entity.weight / sum[weight] * at_places[entity.place[j]][0];
+      if (sum[constrained] == 0) shares[j] = entity.weight / sum[weight] * at_places[entity.place[j]][0];
       on_mean += shares[j];
     }
     for (int k = 0; k < In::n; ++k) {
@@ -135,23 +125,16 @@ struct TransposedForm : PlaceSums {
     grid.places.sum_over_ranks(at_places);
     for (int k = 0; k < Grid::n_sweeps; ++k) transpose_improvement();
     HybridError::Forces all{{}, std::vector<Real>(mesh.facets->id.size(), 0), {}};
-    for (const auto& side : grid.sides)
-      in_cells[side.cell][Flux::opposite(side.local_face)] += at_places[side.of_face.back()][1];
     for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) {
       all.on_cells.push_back(-add_means(grid.cells[c], in_cells[c]));
       for (int k = 0; k < n; ++k) all.on_flows.in_cells.push_back(-in_cells[c][Flux::opposite(k)]);
     }
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-      const Real on_mean = add_means(grid.faces[f], in_faces[f]);
-      if (dim == 3) all.on_facets[mesh.facets->fracture_face[f]] -= on_mean;
-      for (int k = 0; k < 2 && dim == 2; ++k) {  // see Error::mean_in_face() in hybrid_error.cpp
-        all.on_facets[grid.flow.facet_of_face(f, k)] -= on_mean / 2;
-        in_faces[f][k] += on_mean * grid.two_point_resistance(f) / 2;
-      }
+      all.on_facets[mesh.facets->fracture_face[f]] -= add_means(grid.faces[f], in_faces[f]);
       for (int k = 0; k < dim; ++k) all.on_flows.in_faces.push_back(-in_faces[f][Flux::opposite_ridge(k)]);
     }
-    for (const auto& one : grid.held_places)
-      all.on_facets[one.facet] -= at_places[one.place][0] / sums[one.place][held];
+    for (const auto& one : grid.constrained_places)
+      all.on_facets[one.facet] -= at_places[one.place][0] / sums[one.place][constrained];
     return all;
   }
 };

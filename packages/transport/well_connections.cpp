@@ -237,7 +237,8 @@ class Finder {
       if (std::abs(mesh::dot(away, normal)) > on_fracture * size_ ||
           std::abs(mesh::dot(away, face.frame[1])) > face.area / 2)
         return false;
-      connect_face(f, segment, 2 / ((1 + well.skin) * well.radius));
+      const Real off_mean = parameters_.in_fractures == FluxScheme::tpfa ? 0 : face.area / 6;
+      connect_face(f, segment, 1 / ((1 + well.skin) * well.radius / 2 + off_mean));
       return true;
     } else {
       const Real towards = mesh::dot(segment.along, normal), height = mesh::dot(away, normal);
@@ -286,7 +287,7 @@ class Finder {
     std::vector<WellPatchEntity> patch;
     std::map<LocalIndex, std::array<LocalIndex, 2>> where;  // [end] face and ridge
     const auto add = [&](LocalIndex one) {
-      const FacePlane<shape> plane(*mesh_, one, 1, parameters_.scheme);
+      const FacePlane<shape> plane(*mesh_, one, 1, parameters_.in_fractures);
       patch.push_back({{}, one == f ? 2 * M_PI : 0, {}});
       for (int k = 0; k < n; ++k) {
         for (int j = 0; j < n; ++j) patch.back().T.push_back(plane.T[k][j]);

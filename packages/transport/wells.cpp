@@ -167,16 +167,16 @@ class Wells final : public assembly::Module, public assembly::Loads, public asse
     for (const auto& c : connections_) {
       const Real at = p[c.fracture >= 0](c.row), share = this->share(c);
       const Real W = W_of(c);
-      const bool held = well(c).pressure.has_value();
+      const bool constrained = well(c).pressure.has_value();
       const auto of_row = unbalanced[c.fracture >= 0].find(c.row);
       const Real rest = of_row == unbalanced[c.fracture >= 0].end() ? 0 : of_row->second;
-      const Real product = held ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
-      const Real flow = held ? product + W * rest : product;
+      const Real product = constrained ? W * parameters_.fluid.drop(pressure(c, state.t), at, 0) : rate(c, state.t);
+      const Real flow = constrained ? product + W * rest : product;
       const Real drop = flow == 0 ? 0 : flow / W;
       const auto of_well = first + c.well * width;
       totals[of_well].value += flow;
-      totals[of_well + 1].value +=
-          share * (held ? control(well(c))(well(c).points[0], state.t) : at + drop - head(c, at + drop, state.t));
+      totals[of_well + 1].value += share * (constrained ? control(well(c))(well(c).points[0], state.t)
+                                                        : at + drop - head(c, at + drop, state.t));
       totals[of_well + 3 + c.fracture].value += flow;
       auto next = of_well + 3 + mesh_->fracture_names.size();
       for (std::size_t j = 0; j < parameters_.carried.size(); ++j) {

@@ -30,6 +30,7 @@ struct WellsParameters {
   fields::Properties<laws::Mobility> mobility;  ///< this and the following as in HybridDiffusionParameters; no values:
                                                 ///< impermeable rock, wells are connected to fractures only
   FluxScheme scheme = FluxScheme::rt0;
+  FluxScheme in_fractures = FluxScheme::rt0;
   laws::Fluid fluid = {};
   std::array<Real, 3> weight{};
   std::vector<laws::Conduit> faces = {};  ///< [local fracture face]
@@ -43,8 +44,9 @@ struct WellsParameters {
 /// | connection        | W                               |
 /// | cell              | 2 pi k_w L/(ln(r_0/r_w) + skin) |
 /// | fracture face, 3D | 2 pi T/(ln(r_0/r_w) + skin)     |
-/// | fracture face, 2D | 2 T/((1 + skin) r_w)            |
+/// | fracture face, 2D | T/((1 + skin) r_w/2 + d)        |
 ///
+/// d = h/6 with the size h of the face represents the drop from the centre to the mean; tpfa: d = 0.
 /// L is the length of the well in the cell, and k_w = LineFlow::conductance. r_0 is the equivalent radius, see
 /// log_equivalent_radius(). T is the present transmissivity, or that of State::coefficients. The pressure p_w is that
 /// at the first point plus the hydrostatic pressure difference to the centre of the cell.

@@ -44,17 +44,17 @@ model::Scene column(const Discretisation& cells) {
   walls.initial_gap = -squeeze;
   scene.bulk.material = "rock";
   scene.fractures["void"].material = "walls";
-  const auto hold = [&](const std::string& boundary, int direction, const base::Expression& value) {
+  const auto constrain = [&](const std::string& boundary, int direction, const base::Expression& value) {
     auto& condition = scene.boundary_conditions[boundary];
     condition.boundary = boundary;
     condition.displacement.assign(dim, base::Expression("free"));
     condition.displacement[direction] = value;
   };
-  hold("south", 1, 0);
-  hold("north", 1, base::Expression("-1e-3*t"));
-  for (const char* side : {"west", "east"}) hold(side, 0, 0);
+  constrain("south", 1, 0);
+  constrain("north", 1, base::Expression("-1e-3*t"));
+  for (const char* side : {"west", "east"}) constrain(side, 0, 0);
   if (!flat)
-    for (const char* side : {"bottom", "top"}) hold(side, 2, 0);
+    for (const char* side : {"bottom", "top"}) constrain(side, 2, 0);
   return scene;
 }
 
@@ -181,7 +181,7 @@ TEST(SceneInCpp, IsCheckedLikeOneFromAFile) {
       {"Did you mean \"rock\"", [](auto& s) { s.bulk.material = "rok"; }},
       {"must be", [](auto& s) { s.materials["rock"].nu = 0.7; }},
       {"exactly two are needed", [](auto& s) { s.materials["rock"].G = 1; }},
-      {"must be one of", [](auto& s) { s.materials["walls"].type = "joins"; }},
+      {"must be one of", [](auto& s) { s.materials["walls"].friction = "Coloumb"; }},
       {"has no section here", [](auto& s) { s.fractures.clear(); }},
       {"has 1 value", [](auto& s) { s.boundary_conditions["north"].displacement.resize(1); }},
       {"times must increase", [](auto& s) { s.time.end = -1; }},

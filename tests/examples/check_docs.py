@@ -84,6 +84,7 @@ if [[ ${{words[0]}} =~ ^(run|check)$ ]] && grep -q '"network"' "${{words[1]}}"; 
 fi
 if [[ ${{words[0]}} == new ]]; then exec {root}/sprekk "${{words[@]}}"; fi
 if [[ ${{words[0]}} =~ ^(plot|report|export)$ ]]; then exec {python} -B {root}/apps/${{words[0]}} "${{words[@]:1}}"; fi
+if [[ ${{words[0]}} == upscale ]]; then export PYTHONPATH={modules}; exec "${{mpi[@]}}" {python} -B -m sprekk.upscale "${{words[@]:1}}"; fi
 if [[ ${{words[0]}} =~ ^(network|fit)$ ]]; then exec {python} -B {root}/apps/${{words[0]}} --program {binary} "${{words[@]:1}}" "${{sets[@]}}"; fi
 exec "${{mpi[@]}}" {binary} "${{words[@]}}"
 """
@@ -99,7 +100,8 @@ def prepare(folder, root, binary, mpiexec):
         shutil.copytree(root / name, folder / name)
     launcher = folder / "sprekk"
     launcher.write_text(LAUNCHER.format(**{name: shlex.quote(str(value)) for name, value in {
-        "mpiexec": mpiexec, "python": PLOT_PYTHON, "root": root, "binary": Path(binary).resolve()}.items()}))
+        "mpiexec": mpiexec, "python": PLOT_PYTHON, "root": root, "binary": Path(binary).resolve(),
+        "modules": Path(binary).resolve().parents[2] / "python"}.items()}))
     launcher.chmod(0o755)
     program = folder / "build/apps/sprekk/sprekk"
     program.parent.mkdir(parents=True)
@@ -120,7 +122,7 @@ def commands(block):
 def missing_program(command):
     """Returns the missing program or modules of a command, or None."""
     needs = {"plot": "matplotlib, numpy, vtkmodules", "mesh": "gmsh, matplotlib, numpy, shapely", "network": "numpy, shapely",
-             "fit": "matplotlib, numpy, scipy"}
+             "fit": "matplotlib, numpy, scipy", "upscale": "matplotlib, meshio, mpi4py, numpy, pandas, scipy"}
     words = command.split()
     if words[0] in PROGRAM and words[1] in needs:
         modules = needs[words[1]]

@@ -262,7 +262,7 @@ class Files(MeshTest):
 
     def test_bad_titles(self):
         for titles, why in (
-            ("START_X,START_Y,x1,y1,id", 'the titles of lines lack "x0", "y0"; columns may have any order'),
+            ("A_X,A_Y,x1,y1,id", 'the titles of lines lack "x0", "y0"; columns may have any order'),
             ("x0,y,x1,y1,id", 'the titles of lines lack "y0"; columns may have any order if titles name all of them; without titles they are id,x0,y0,x1,y1; further columns may be name, material and entries of a joint; read: x0,y,x1,y1,id'),
             ("x0,y0,x1,y1,X0", 'columns 1 and 5 have the same title, "x0"'),
             ("x0,y0,x1,y1,name,name", 'columns 5 and 6 have the same title, "name"'),
@@ -336,8 +336,8 @@ class Files(MeshTest):
 
     def test_files_that_cannot_be_read(self):
         self.refused(self.folder / "absent.csv", "absent.csv: cannot be read: No such file")
-        (self.folder / "net.csv").write_bytes(b"1,0.2,0.5,\xff\xfe")
-        self.refused(self.folder / "net.csv", "net.csv: cannot be read: is not UTF-8 text")
+        (self.folder / "net.csv").write_bytes(b"1,0.2,0.5,\x00\xfe")
+        self.refused(self.folder / "net.csv", "net.csv: cannot be read: is not text")
         self.refused(self.write("net.csv", "id,x0,y0,x1,y1"), "net.csv: has no fracture")
         (self.folder / "folder").mkdir()
         self.refused(self.folder / "folder", "folder: cannot be read: Is a directory")
@@ -345,8 +345,8 @@ class Files(MeshTest):
         (self.folder / "zeros").symlink_to("/dev/zero")
         for name in ("pipe", "zeros"):
             self.refused(self.folder / name, f"{name}: cannot be read: is not a regular file, but a pipe, a socket or a device")
-        with mock.patch("tables.MAX_CHARACTERS", 100):
-            self.refused(self.write("net.csv", *["1,0.2,0.5,0.8,0.5"] * 6), "net.csv: cannot be read: has more than 100 characters")
+        with mock.patch("text_file.MAX_BYTES", 100):
+            self.refused(self.write("net.csv", *["1,0.2,0.5,0.8,0.5"] * 6), "net.csv: cannot be read: has more than 100 bytes")
 
     def test_more_fractures_than_can_be_meshed(self):
         with mock.patch("description.MAX_FRACTURES", 3):

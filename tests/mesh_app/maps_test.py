@@ -146,7 +146,7 @@ class MapsTest(ProgramTest):
         """Titles of a table of discs are not read as titles of points."""
         file = self.file("a.csv", "x,y,z,dip,dip direction,radius,number\n0.5,0.5,0.5,70,60,0.2,1\n")
         (disc,) = network(3, {"joints": {"file": file}}).fractures
-        self.assertEqual(disc.points.shape, (12, 3))
+        self.assertEqual(disc.points.shape, (11, 3))
 
     def test_a_corner_a_line_in_3d(self):
         corners = [(0.2, 0.2), (0.7, 0.2), (0.7, 0.6), (0.2, 0.6)]

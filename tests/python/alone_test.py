@@ -216,6 +216,15 @@ class Points(unittest.TestCase):
         self.assertEqual(list(curve.columns), done[0].split(","))
         np.testing.assert_array_equal(curve.to_numpy(), np.array([line.split(",") for line in done[1:]], float))
 
+    def test_aperture_in_situ(self):
+        joint = {"type": "joint", "friction coefficient": 0.6, "normal stiffness": 2e10, "maximum closure": 2e-4,
+                 "reference state": "in situ", "initial aperture": 1.2e-4}
+        curve = sprekk.drive({"Materials": {"joint": joint}, "Time": {"steps": 1},
+                              "Point": {"material": "joint", "control": ["traction", "jump"], "initial traction": [-8e6, 0],
+                                        "path": ["-8e6*(1 - t)", "0"]}})
+        closure = 8e6 / (2e10 + 8e6 / 2e-4)
+        np.testing.assert_allclose(curve["aperture"], [1.2e-4, 1.2e-4 + closure], rtol=1e-14)
+
     def test_no_state(self):
         with self.assertRaises(sprekk.PointFailed) as raised:
             sprekk.drive(CYCLES, {"Point.control": ["traction", "traction"], "Point.path": ["-1e6*t", "1e7*t"]})

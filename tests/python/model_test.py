@@ -105,6 +105,13 @@ class Block(unittest.TestCase):
         with self.assertRaisesRegex(sprekk.Error, "closed"):
             self.model.step(2)
 
+    def test_krylov_methods(self):
+        """The methods that Trilinos registers are available in the module."""
+        model = sprekk.Model(sprekk.Scene(BLOCK, {"Solver.Linear solver.type": "iterative"}))
+        self.model.step(1)
+        model.step(1)
+        self.assertLess(largest(model.field("displacement") - self.model.field("displacement")), 1e-12)
+
     def test_take_back_and_restore(self):
         self.model.step(1)
         self.model.step(1.5)

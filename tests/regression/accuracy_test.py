@@ -31,12 +31,12 @@ class Accuracy(ProgramTest):
                 one = accuracy["quantities"]["goal"]
                 self.assertTrue(accuracy["reached"] and one["reached"])
                 self.assertEqual((one["unit"], one["title"]), ("m", f'{quantity} of "crack"'))
-                self.assertAlmostEqual(one["asked"], 0.01 * one["value"])
-                self.assertLessEqual(one["error"], one["asked"])
-                self.assertLess(abs(one["value"] - EXACT), 1.5 * one["asked"], (scene, order))
+                self.assertAlmostEqual(one["requested"], 0.01 * one["value"])
+                self.assertLessEqual(one["error"], one["requested"])
+                self.assertLess(abs(one["value"] - EXACT), 1.5 * one["requested"], (scene, order))
                 self.assertRegex(one["line"], rf'^{quantity} of "crack": [0-9.e-]+ m \+- ')
                 self.assertAlmostEqual(float(one["line"].split(": ")[1].split(" ")[0]) / one["value"], 1, delta=1e-3)
-                self.assertIn("asked 1 %)", one["line"])
+                self.assertIn("requested 1 %)", one["line"])
                 cells = [mesh["cells"] for mesh in accuracy["meshes"]]
                 self.assertGreaterEqual(len(cells), 2)  # one mesh does not test the refinement
                 self.assertEqual(cells, sorted(set(cells)))
@@ -98,7 +98,7 @@ class Accuracy(ProgramTest):
                 for key in ("value", "error"):
                     self.assertAlmostEqual(quantity[key] / other["quantities"][name][key], 1, delta=1e-4)
         through = runs[0]["accuracy"]["quantities"]["through"]
-        self.assertLess(abs(through["value"] - fine["accuracy"]["quantities"]["through"]["value"]), 1.5 * through["asked"])
+        self.assertLess(abs(through["value"] - fine["accuracy"]["quantities"]["through"]["value"]), 1.5 * through["requested"])
 
     def test_errors_of_earlier_steps_last(self):
         """The error of almost steady flow after many steps is equal to that of steady flow."""

@@ -110,6 +110,31 @@ class Scenes(BadInput):
         text = self.scene("point/cyclic_shear.xml").read_text().replace('"steps" type="int"', '"target Newton iterations" type="int"')
         (self.folder / "a.xml").write_text(text)
         self.refuse(['"target Newton iterations", which needs a mesh'], "point", "a.xml")
+        text = self.scene("point/cyclic_shear.xml").read_text().replace('"steps" type="int" value="8"', '"tolerance" type="double" value="0.1"')
+        (self.folder / "a.xml").write_text(text)
+        self.refuse(['Time: chooses steps by "tolerance", which needs a mesh or friction that depends on the slip rate; Point > "material" has friction "Coulomb"'],
+                    "point", "a.xml")
+
+    def test_friction_by_slip_rate(self):
+        def refuse(expected, *sets):
+            self.refuse([expected], "check", self.scene("earthquakes/spring_slider_2d.xml"), *(word for entry in sets for word in ("--set", f"Materials.joint.{entry}")))
+        refuse('friction "rate and state" depends on the slip rate and requires bond "none" and damage "none"; they are "constant cohesion" and "none"',
+               "bond=constant cohesion", "cohesion=1e5")
+        refuse('give either "initial state" or "initial friction coefficient"', "initial friction coefficient=0.6")
+        refuse('"initial slip rate": is 0, must be positive', "initial slip rate=0")
+        refuse('"radiation damping": is -1, must be at least 0', "radiation damping=-1")
+        refuse('depends on the slip rate and requires bond "none" and damage "none"; they are "none" and "isotropic"', "damage=isotropic",
+               "damage length of friction=1e-3")
+        refuse('they are "constant cohesion" and "none"', "bond=constant cohesion", "cohesion=1e5 + x")
+        gouge = ("dilation=slip rate", "dilatancy coefficient=1e-4", "gouge thickness=1e-3")
+        refuse('"gouge thickness": missing; it is required with dilation "slip rate"', *gouge[:2])
+        self.refuse_set(['dilation "slip rate" requires friction "rate and state" or "rate and state, slip law", whose state controls the steps; it is "Coulomb"'],
+                        *(f"Materials.joint.{entry}" for entry in (*gouge, "state evolution distance=1e-5", "initial slip rate=1e-9")))
+
+    def test_events_without_faces(self):
+        for scene, reason in (("performance/elastic_3d.xml", "requires fractures, and the mesh has none"),
+                              ("flow/network_2d.xml", "requires deformable rock, and the rock of this scene is rigid")):
+            self.refuse([f'Output > "events": {reason}'], "check", self.scene(scene), "--set", "Output.events.rate=1e-3")
 
     def test_types_and_lengths(self):
         moved = "Boundary conditions.moved.displacement"
@@ -226,6 +251,17 @@ class Scenes(BadInput):
         refuse(['Output > "error estimate": is of triangles and tetrahedra where something flows'], "Output.error estimate=true", "Mesh.cell=quadrilateral")
         refuse(['middle > "cuts": needs "Flow > rigid rock"'], "Fractures.middle.cuts={east}")
         refuse(['Materials > rough joint: give either "friction coefficient" or "friction angle"'], "Materials.rough joint.friction angle=30")
+
+    def test_channels(self):
+        def refuse(expected, scene, *sets):
+            self.refuse(expected, "check", self.scene(scene), *(word for entry in sets for word in ("--set", entry)))
+        shaft, pipes = "Flow.Intersections.shaft.", "flow/channels_3d.xml"
+        refuse(['shaft > "fractures": is "east", must be one of'], pipes, shaft + "fractures={north joint, east}")
+        refuse(['shaft > "fractures": has "bedding" twice'], pipes, shaft + "fractures={bedding, bedding}")
+        refuse(['shaft: give either "diameter" or "permeability times area"'], pipes, shaft + "permeability times area=1e-9")
+        refuse(['shaft > "diameter": is 0, must be'], pipes, shaft + "diameter=0")
+        refuse(["Flow > Intersections > shaft: needs a mesh in 3D"], "flow/network_2d.xml", shaft + "diameter=0.02")
+        refuse(['not available with "Flow > Intersections"'], pipes, "Output.error estimate=true")
 
     def test_flow_in_fractures(self):
         def refuse(expected, *sets, command="check"):

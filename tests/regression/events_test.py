@@ -95,5 +95,64 @@ class Events(ProgramTest):
         self.assertEqual(written(), ["events.csv", "fractures.csv"])
 
 
+class Catalogue(ProgramTest):
+    """Events by slip rate. The shear traction falls by the shear modulus G times the slip, per height of 1 m."""
+
+    SCENE, TIMES = "verification/events_2d.xml", (10, 10.5, 11, 20, 21, 22, 30)
+
+    def rows(self, output="out"):
+        return list(csv.DictReader((self.folder / output / "events.csv").read_text().splitlines()))
+
+    def to(self, n):
+        return f"Time.schedule={{{', '.join(map(str, self.TIMES[:n]))}}}"
+
+    def expect(self, row, **wanted):
+        titles = {title.partition(" [")[0]: title for title in row}
+        for name, value in wanted.items():
+            self.assertAlmostEqual(float(row[titles[name]]), value, delta=1e-9 * max(1, abs(value)), msg=name)
+
+    def expect_two_events(self, rows):
+        self.assertEqual([row["fracture"] for row in rows], ["fracture"] * 2)
+        total = 0
+        for k, (row, start, end, slip) in enumerate(zip(rows, (10, 20), (11, 22), (0.01, 0.03)), 1):
+            total += G * slip
+            self.expect(row, start=start, end=end, slip=slip, moment=G * slip, cumulated_moment=total, event=k, y=0.5,
+                        magnitude=2 / 3 * (math.log10(G * slip) - 9.1), duration=end - start, max_slip=slip,
+                        max_slip_rate=slip / (end - start), length=1, stress_drop=G * slip)
+
+    def test_uniform_slip(self):
+        """Two fast events with slow slip between them, also after restarts within events and on other ranks."""
+        self.run_scene(self.SCENE, ranks=2)
+        self.expect_two_events(self.rows())
+        first = self.rows()
+        self.run_scene(self.SCENE, self.to(2), "Output.checkpoints.steps=1", output="parts")
+        self.expect(self.rows("parts")[0], end=10.5, slip=0.005, stress_drop=G * 0.005)
+        for n, ranks in ((5, 2), (7, 1)):
+            sets = [word for text in (self.to(n), "Output.checkpoints.steps=1") for word in ("--set", text)]
+            self.call("run", self.scene(self.SCENE), "--output", "parts", "--restart", *sets, ranks=ranks)
+        for row, same in zip(self.rows("parts"), first, strict=True):
+            self.expect(row, **{title.partition(" [")[0]: float(value) for title, value in same.items() if title != "fracture"})
+
+    def test_rupture_of_a_part(self):
+        """Half of the faces slip. The hypocentre is their centre; means are over these faces."""
+        self.run_scene(self.SCENE, "Fractures.fracture.prescribed slip.slip={x < 0.5 ? slip(t) : 0}")
+        for row, slip in zip(self.rows(), (0.01, 0.03), strict=True):
+            self.expect(row, length=0.5, x=0.25, y=0.5, slip=slip, max_slip=slip, moment=G * slip / 2)
+
+    def test_several_fractures(self):
+        """Fractures that slip in consecutive steps have a common event number. Below the threshold there is none."""
+        other = ["Mesh.cells={2, 4}", "Mesh.fractures.other.lower corner={0, 0.25}",
+                 "Mesh.fractures.other.upper corner={1, 0.25}", "Fractures.other.material=joint",
+                 "Fractures.other.prescribed slip.slip={slip(max(t - 1, 0))}",
+                 "Time.schedule={10, 10.5, 11, 12, 20, 21, 22, 23, 30}"]
+        self.run_scene(self.SCENE, *other, ranks=3)
+        rows = self.rows()
+        self.assertEqual([row["fracture"] for row in rows], ["fracture", "other"] * 2)
+        for row, number, start in zip(rows, (1, 1, 2, 2), (10, 11, 20, 21)):
+            self.expect(row, event=number, start=start)
+        self.run_scene(self.SCENE, "Output.events.rate=0.1")
+        self.assertEqual(self.rows(), [])
+
+
 if __name__ == "__main__":
     main()

@@ -3,6 +3,7 @@
 
 Tests limit analysis with known limit loads, equal scenes for equal seeds, and the criteria for failures."""
 import io
+import json
 import math
 import subprocess
 import sys
@@ -204,6 +205,15 @@ class Verdicts(ProgramTest):
         self.assertEqual(self.verdict(None, 0.0)[0], "hang")
         for status in (1, 134):
             self.assertEqual(self.verdict(status, 0.0), ("failed", [f"status {status}: said"]))
+
+    def test_pressures_of_nearly_incompressible_rock_converge(self):
+        """Compression of nearly incompressible rock: round-off of rows with a negative diagonal was added to their residual."""
+        drawn, refusal = random_scenes.write(770077, 4, self.folder, program.PROGRAM)
+        self.assertEqual(refusal, "")
+        self.call("run", self.folder / f"{drawn.name}.xml", "--output", self.folder / "out")
+        steps = json.loads((self.folder / "out/results.json").read_text())["steps"]
+        self.assertLessEqual(max(step["newton_iterations"] for step in steps), 6)
+        self.assertEqual(sum(step["cuts"] for step in steps), 0)
 
     def test_scenes_that_fail_are_saved(self):
         broken = self.folder / "broken"

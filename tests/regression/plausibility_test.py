@@ -45,6 +45,8 @@ class Plausibility(ProgramTest):
             (["Time.steps=1"], 'Sprekk > Time: 1 step goes over knots of the table "ramp", the first at t = 1 s', "loads are evaluated only at the ends of steps", '"schedule"'),
             ([*STRESS, "Bulk.initial stress={0, 5e6, 0, 0}"], "the initial stress is tension in 100 % of the cells, 5e+06 Pa", "which is negative", "check the signs"),
             ([f"Bulk.in-situ stress.{entry}" for entry in ("datum=0", "Sv=5e6", "Shmin=3e6")], "SHmax is 0 Pa in a depth of", "there Sv is 5e+06 Pa", 'give "SHmax" or "SHmax gradient"'),
+            (["Bulk.body force={}", *(f"Bulk.in-situ stress.{entry}" for entry in ("datum=0", "Sv gradient=26e3", "SHmax gradient=3e4", "Shmin gradient=2e4"))],
+             '"Sv gradient" is 2.6e+04 Pa/m', "the rock has no weight", "displaces the rock", '"gravity" in "Bulk"'),
             (["Boundary conditions.confinement.confining pressure=-5e6"], '> confinement > "confining pressure": is -5e+06 Pa', "pulls at the rock", "compression is positive"),
             ([*STRESS, "Bulk.initial stress={0, -5e6, 0, 4e6}"], 'a fracture is beyond the strength of the joint (100 % of the area): "shear plane"',
              "slip or open in the first step", "check the initial stress"),
@@ -68,6 +70,29 @@ class Plausibility(ProgramTest):
         err = self.warnings(scene, "Heat.initial temperature=180", "Boundary conditions.surface.temperature=20")
         for text in ('Heat > "initial temperature": is 180 K', 'surface > "temperature": is 20 K', "add 273.15"):
             self.assertIn(text, err)
+
+    def test_channels(self):
+        channels = self.scene("flow/channels_3d.xml")
+        self.assertEqual(self.warnings(channels), "")
+        for ranks in (1, 2):
+            err = self.warnings(channels, "Mesh.fractures.east joint.upper corner={70, 40, 0}", ranks=ranks)
+            self.assertIn('Flow > Intersections > shaft: its "fractures" do not meet: the channel has no effect', err)
+
+    def test_cohesive_zone(self):
+        scene = self.scene("earthquakes/spring_slider_2d.xml")
+        self.assertEqual(self.warnings(scene), "")
+        for ranks in (1, 2):
+            err = self.warnings(scene, "Mesh.cells={2, 2}", ranks=ranks)
+            for text in ('fracture "fault": a cell has an edge of 0.6 m, and the cohesive zone of a rupture is 0.471 m long', "use edges of at most 0.157 m"):
+                self.assertIn(text, err)
+
+    def test_sudden_loss_of_a_bond(self):
+        """Fractures with an unbroken part have no such warning; others with the same joint do."""
+        second = [f"Mesh.fractures.second.{corner}" for corner in ("lower corner={1, 1}", "upper corner={1.4, 1}")] + ["Fractures.second.material=joint"]
+        bond = [f"Materials.joint.{entry}" for entry in ("bond=linear softening", "cohesion=5e6", "tensile strength=2e6", "fracture energy=0.1", "shear fracture energy=1")]
+        for unbroken, expected in ((["crack"], True), (["crack", "second"], False)):
+            err = self.warnings(self.scene("growth/edge_crack_2d.xml"), *second, *bond, *(f"Fractures.{name}.unbroken=1" for name in unbroken))
+            self.assertEqual("the bond may break suddenly" in err, expected, err)
 
     def test_coefficient(self):
         err = self.warnings(self.scene("verification/cyclic_2d.xml"), "Materials.joint.friction coefficient=30")

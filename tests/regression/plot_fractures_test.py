@@ -50,7 +50,7 @@ class Fractures(PlotTest):
 
     def test_loops_of_many_fractures(self):
         """Named curves differ in colour or line style. The legend is sorted by number and beside the axes."""
-        for n, named in ((12, 12), (40, style.MAX_CURVES)):
+        for n, named in ((8, 8), (40, loops.MAX_SHOWN)):
             figure = loops.of_fractures(*self.means(n), "many")
             legend = figure.axes[2].get_legend()
             labels = [text.get_text() for text in legend.get_texts()]

@@ -1,16 +1,24 @@
 #!/usr/bin/env python3
 """Numbers, units and scales of pictures: plot_numbers_test.py PROGRAM ROOT MPIEXEC"""
 from plotting import PlotTest  # before other modules: it skips the test without them
-from program import main
+from program import ROOT, main
+import importlib.util
 import bulk
 import convergence
 import flow
 import magnitudes
 import numpy as np
 import overview
+import rates
 import read
 import series
 import style
+
+
+specification = importlib.util.spec_from_file_location("plot_main", ROOT / "apps/plot/__main__.py")
+plot_main = importlib.util.module_from_spec(specification)
+specification.loader.exec_module(plot_main)
+plot_seconds = plot_main.seconds
 
 
 class Numbers(PlotTest):
@@ -68,6 +76,51 @@ class Numbers(PlotTest):
         self.assertEqual([style.when(t) for t in (2.0, 600.0, 7200.0, 30 * 86400.0)], ["t = 2 s", "t = 10 min", "t = 2 h", "t = 30 d"])
         self.assertEqual(style.when(43200.0, (86400.0, "d")), "t = 0.5 d")
         self.assertTrue(np.allclose(series.injected(np.array([2.0, 3]), np.array([5.0, 7]), 1.0), [5, 12]))
+
+    def test_time_of_a_picture(self):
+        """A time without unit has the unit of the scene."""
+        for text, clock, exact in (("5 h", None, 18000), ("5h", (60.0, "min"), 18000), ("2.5e1", None, 25), ("1e-3", (3600.0, "h"), 3.6), ("1 year", None, 31557600)):
+            self.assertAlmostEqual(plot_seconds(text, clock), exact)
+        for text in ("", "h", "5 weeks", "nan", "1 2", "inf s"):
+            with self.assertRaisesRegex(read.PlotError, "--time: is"):
+                plot_seconds(text, None)
+
+    def test_colours_of_fractures(self):
+        """A fracture has one colour in all panels, another fracture a different one. Round-off has no panel."""
+        def step(time, slip, opening, pressure):
+            return {"time": time, "single_fractures": {"max_slip": slip, "mean_opening": opening, "mean_fracture_pressure": pressure}}
+
+        zero, up = [0.0] * 8, [1e-3 * k for k in range(8)]  # the first six change least in slip and most in pressure
+        steps = [step(1.0, zero, zero, zero), step(2.0, up, [1e-20 * k for k in range(8)], [1e9 * (1e-2 - x) for x in up])]
+        axes = series.of_run(steps, list("abcdefgh"), "run").axes
+        self.assertEqual([ax.get_ylabel() for ax in axes], ["largest slip (mm)", "mean pressure in fractures (MPa)"])
+        slip, pressure = ({line.get_label(): (line.get_color(), line.get_marker()) for line in ax.lines if len(line.get_label()) == 1} for ax in axes)
+        self.assertEqual((set(slip), set(pressure)), (set("cdefgh"), set("abcdef")))
+        both = set(slip) & set(pressure)
+        self.assertEqual({name: slip[name] for name in both}, {name: pressure[name] for name in both})
+        self.assertEqual(len(set((slip | pressure).values())), 8)
+
+    def test_slip_rates(self):
+        """Profiles at increments of the largest slip, in the colour of events by the rate; friction of closed steps."""
+        path = self.folder / "line.csv"
+        slips, speeds = (0, 0.2, 0.201, 1), (1e-9, 1e-9, 1e-9, 1e-2)
+        path.write_text("time [s],distance [m],x [m],slip [m],slip rate [m/s]\n" + "".join(
+            f"{t},{x},{x},{slip * (2 - x) / 2},{speed}\n" for t, (slip, speed) in enumerate(zip(slips, speeds)) for x in (0, 1, 2)))
+        ((name, figure),) = rates.of_probe(path)
+        lines = figure.axes[0].lines
+        self.assertEqual((name, [line.get_color() for line in lines]), ("profiles_line", [style.LINES[0]] * 2 + [style.LINES[3]]))
+        self.assertTrue(np.allclose([line.get_ydata() for line in lines], [[0, 0, 0], [0.2, 0.1, 0], [1, 0.5, 0]]))
+        path.write_text("time [s],slip rate [m/s],traction local n [Pa],traction local t1 [Pa],traction local t2 [Pa]\n"
+                        "0,1e-9,-10,3,4\n1,1e-8,0,0,0\n2,1e-7,-10,0,6\n")
+        ((name, figure),) = rates.of_probe(path)
+        (line,) = figure.axes[0].lines
+        self.assertEqual(name, "phase_line")
+        self.assertTrue(np.allclose(line.get_xydata(), [[1e-9, 0.5], [1e-7, 0.6]]))
+        path.write_text("time [s],slip rate [m/s],traction local n [Pa],traction local t [Pa]\n0,1e-9,-10,-4\n")
+        ((_, figure),) = rates.of_probe(path)
+        self.assertTrue(np.allclose(figure.axes[0].lines[0].get_xydata(), [[1e-9, 0.4]]))
+        path.write_text("time [s],pressure [Pa]\n0,1\n")
+        self.assertEqual(list(rates.of_probe(path)), [])
 
     def test_probes(self):
         path = self.folder / "gauge.csv"

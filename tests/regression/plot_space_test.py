@@ -35,7 +35,7 @@ class Events(PlotTest):
         self.assertEqual(events.of_run(self.folder, content), [])
         table = self.folder / "events.csv"
         table.write_text('fracture,start,end,slip,moment,magnitude,cumulated\n"a, b",1,1.5,2e-3,3,4,5\n')
-        self.assertEqual(events.of_run(self.folder, content), [("a, b", 3600, 5400, 2e-3, 3, 4, 5)])
+        self.assertEqual(events.of_run(self.folder, content), [("a, b", 3600, 5400, 2e-3, 3, 4, 5, None, None)])
         table.write_text("fracture,start\na,b\n")
         with self.assertRaisesRegex(read.PlotError, "events.csv: is not a table of events; run the scene again"):
             events.of_run(self.folder, content)
@@ -137,6 +137,15 @@ class Space(PlotTest):
         )
         self.assertIsNone(places.region(centres, np.array([1, 0.5, 1]), whole))
         self.assertIsNone(places.region(centres, np.zeros(3), whole))
+
+    def test_faces_are_cut_at_the_region(self):
+        """The area of a square across a corner of the box is the part inside; values follow their faces."""
+        points = np.array([[0.0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [5, 5, 5], [6, 5, 5], [6, 6, 5]])
+        surface = read.Surface(points, [np.array([4, 5, 6]), np.array([0, 1, 2, 3])], {"slip": np.array([1.0, 2])}, {})
+        part = space.clipped(surface, np.array([[1.0, 0.5, -1], [3, 3, 1]]))
+        area = sum(np.linalg.norm(np.cross(x[1:-1] - x[0], x[2:] - x[0]).sum(axis=0)) / 2 for x in part.corners())
+        self.assertAlmostEqual(area, 1.5)
+        self.assertEqual(set(part.cell_data["slip"]), {2.0})
 
     def test_network(self):
         """The box is that of the rock; every fracture is named or listed as hidden, and a well is a line with a name."""

@@ -187,6 +187,13 @@ class Pictures(PlotTest):
         names = {text.get_text() for ax in made["maps"].axes for text in ax.texts}
         self.assertEqual(names, set(content["steps"][-1]["fractures"]))
 
+    def test_impermeable_rock(self):
+        """The rock has no pressure, the fractures have one."""
+        self.run_scene("poro/injection_2d.xml", "Materials.granite.permeability={0}", "Time.steps=1", "Time.end=3600")
+        made = self.figures("out")
+        self.assertNotIn("overview", made)
+        self.expect_labels(made["fractures"], "effective traction (MPa)")
+
     def expect_overview(self, figure, rock):
         """Slip, and changes of pressure in rock and in fractures, as the run wrote them; a mark at the well."""
         left, right = figure.axes[:2]

@@ -66,6 +66,7 @@ TEST(SceneCheck, EntriesOfTheOtherTypeOfMaterialAreRefused) {
   scene.materials.at("rock").friction_coefficient = 0.5;
   scene.materials.at("rock").initial_gap = 1e-3;
   scene.materials.at("joint").density = 2700;
+  scene.materials.at("rock").source = scene.materials.at("joint").source = "of both types";
   const auto error = error_of(scene);
   EXPECT_EQ(n_lines(error), 3) << error;
   EXPECT_TRUE(has(error, "Materials > rock > \"friction coefficient\": unknown")) << error;
@@ -84,6 +85,10 @@ TEST(SceneCheck, EntriesOfAnotherLawOfAJointAreRefused) {
   EXPECT_EQ(n_lines(error), 1) << error;
   EXPECT_TRUE(has(error, "Materials > joint > \"friction coefficient\": unknown. It belongs to friction")) << error;
   joint.friction_coefficient.reset();
+  EXPECT_EQ(error_of(scene), "");
+  joint.friction = "no slip";  // the roughness is still an entry of the hydraulic aperture
+  joint.hydraulic_aperture = "Barton";
+  for (const char* entry : {"joint wall strength", "residual friction angle"}) joint.entry(entry).reset();
   EXPECT_EQ(error_of(scene), "");
 }
 

@@ -79,6 +79,15 @@ class Schema(ProgramTest):
         entries = re.search(r'(<Parameter name="cell".*?/>)(.*?)(<Parameter name="cells".*?/>)', text, re.DOTALL)
         self.assertTrue(self.is_valid(text.replace(entries[0], entries[3] + entries[2] + entries[1])))
 
+    def test_one_material_of_all_fractures(self):
+        """Sections of fractures may omit the material that the section of all fractures names."""
+        text = (ROOT / "xml" / "networks" / "shapes_3d.xml").read_text()
+        own = '<Parameter name="material" type="string" value="joint"/>'
+        begin = text.rindex('<ParameterList name="Fractures">')
+        shared = '<ParameterList name="Fractures">' + own + text[begin:].split(">", 1)[1].replace(own, "")
+        self.assertGreater(text.count(own, begin), 1)
+        self.assertTrue(self.is_valid(text[:begin] + shared))
+
     def test_other_ways_to_write_a_value(self):
         for old, new in (('type="double" value="50 GPa"', 'type="string" value="5e10*(1 + x)"'),
                          ('type="double" value="50 GPa"', 'type="int" value="5000000"'),

@@ -368,10 +368,25 @@ class Words(ReportTest):
         ]
         self.assertEqual(table.columns, titles)
         self.assertEqual(table.rows, [("b", "2", "3", "2", "2", "5 × 10⁹"), ("a", "1", "–", "1", "1", "0")])
-        self.assertEqual(listed.rows, [("b", "3", "4", "2", "5 × 10⁹", "0.3993")])
+        self.assertEqual(listed.rows, [("b", "0.3993", "3", "4", "2", "5 × 10⁹")])
         del content["single_fractures"]
         (table,), _ = figures.of_run(content, None, [])
         self.assertEqual([row[0] for row in table.rows], ["set"])
+
+    def test_time_of_pictures(self):
+        """The last step, or the one with the largest slipping area if no face slips at the end."""
+        def content(*shares):
+            steps = [{"time": float(k), "single_fractures": {"fraction_slip": share}} for k, share in enumerate(shares)]
+            return {"single_fractures": [{"area": 1.0}, {"area": 3.0}], "steps": steps}
+
+        def time(*shares, written=(0.0, 1.0, 2.0)):
+            return figures.time_of_pictures(content(*shares), written)
+
+        self.assertEqual(time([0, 0], [0, 0]), 1)
+        self.assertEqual(time([0, 1], [0.1, 0]), 1)
+        self.assertEqual(time([1, 0], [0, 0.5], [0, None]), 1)
+        self.assertEqual(time([1, 0], [0, 0.5], [0, 0], written=(0.0, 2.0)), 0)
+        self.assertEqual(figures.time_of_pictures({"steps": [{"time": 2.0}]}, []), 2)
 
     def test_rounding_is_zero_in_tables(self):
         self.assertEqual(figures.column("slip", [2e-3, 3e-19, None], "m"), ("slip (mm)", ["2", "0", "–"]))

@@ -30,6 +30,8 @@ struct BartonAperture {
     if (!(a > 0)) return 0;
     return a < smooth ? 2 * a / smooth : 1;
   }
+  /// Mechanical aperture a with hydraulic(a) = e.
+  Real mechanical(Real e) const { return e < smooth ? std::sqrt(e * smooth) : e; }
 };
 
 }  // namespace sprekk::laws

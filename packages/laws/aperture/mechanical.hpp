@@ -13,6 +13,8 @@ struct MechanicalAperture {
   KOKKOS_INLINE_FUNCTION Real hydraulic(Real a) const { return a; }
   /// Derivative of hydraulic(a).
   KOKKOS_INLINE_FUNCTION Real slope(Real) const { return 1; }
+  /// Mechanical aperture a with hydraulic(a) = e.
+  Real mechanical(Real e) const { return e; }
 };
 
 }  // namespace sprekk::laws

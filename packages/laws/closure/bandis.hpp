@@ -15,7 +15,7 @@ namespace sprekk::laws {
 struct BandisClosure : BartonBandisClosure {
   Real roughness = 0;      ///< JRC
   Real wall_strength = 1;  ///< JCS, Pa
-  Real aperture = 1;       ///< a, mechanical aperture without load, m
+  Real aperture = 0;       ///< a, mechanical aperture without load, m; 0: not known before in_situ(), no closure
   Real cycle = 1;
 
   static constexpr const char *name = "Bandis", *meaning = "hyperbolic, by JRC, JCS and aperture (Bandis et al. 1983)";
@@ -25,23 +25,47 @@ struct BandisClosure : BartonBandisClosure {
             {&Law::wall_strength, wall_strength_entry()},
             {&Law::aperture,
              Entry{"joint aperture", "m", base::positive(),
-                   "mechanical aperture a of the unloaded joint; JRC/50 mm for fresh walls (Bandis et al. 1983)"}},
+                   "mechanical aperture a of the unloaded joint; JRC/50 mm for fresh walls (Bandis et al. 1983); may "
+                   "be absent with \"reference state\" in situ"}
+                 .or_found_in_situ()},
             {&Law::cycle, Entry{"loading cycle", "-", base::at_least(1).to(3),
                                 "loading cycle, from 1 (first loading) to 3 (after two cycles) (Bandis et al. 1983)"}
                               .or_else(1)}};
   }
   void complete() {
-    const Real a = aperture * 1e3, strength = wall_strength / 1e6 / a;
+    if (aperture == 0) return;
+    const auto& [fixed, by_roughness, factor, exponent] = closure_terms();
+    const Real strength = wall_strength / 1e9 / aperture;  // MPa/mm
     stiffness = 1e9 * (-7.15 + 1.75 * roughness + 0.02 * strength);
-    maximum = 1e-3 * (cycle == 1 ? -0.2960 - 0.0056 * roughness + 2.2410 * std::pow(strength, -0.2450)
-                                 : -0.1032 - 0.0074 * roughness + 1.1350 * std::pow(strength, -0.2510));
+    maximum = 1e-3 * (fixed + by_roughness * roughness + factor * std::pow(strength, exponent));
   }
   std::string defect() const {
     if (cycle != 1 && cycle != 3) return "\"loading cycle\" must be 1 or 3: other cycles have no measured values";
-    if (stiffness > 0 && maximum > 0) return "";
+    if (aperture == 0 || (stiffness > 0 && maximum > 0)) return "";
     return "\"joint roughness coefficient\", \"joint wall strength\" and \"joint aperture\" are outside of the "
            "measured range of the closure law: stiffness or maximum closure would be negative";
   }
+
+  /// Law of the joint whose aperture without dilation is a (m) under the compression N (Pa). Without a given aperture
+  /// a_0 it solves a_0 - V(N; a_0) = a over the range of the regressions. Of two solutions it takes the larger one,
+  /// where a grows with a_0. Throws an Error with the possible apertures if there is none.
+  BandisClosure in_situ(Real N, Real a) const;
+  /// Smaller unloaded aperture of the same regressions with the same aperture under the compression N, m; 0: none.
+  Real smaller_aperture(Real N) const;
+
+ private:
+  /// Terms A, B, C, D of Du.
+  struct ClosureTerms {
+    Real fixed, by_roughness, factor, exponent;
+  };
+  ClosureTerms closure_terms() const {
+    if (cycle == 1) return {-0.2960, -0.0056, 2.2410, -0.2450};
+    return {-0.1032, -0.0074, 1.1350, -0.2510};
+  }
+  BandisClosure of_aperture(Real unloaded) const;
+  Real least_aperture() const;    ///< unloaded aperture with Du = 0, m
+  Real largest_aperture() const;  ///< unloaded aperture with K_n = 0, m; may be infinite
+  Real aperture_under(Real N, Real unloaded) const;
 };
 
 }  // namespace sprekk::laws

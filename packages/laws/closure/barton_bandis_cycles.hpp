@@ -14,6 +14,7 @@ namespace sprekk::laws {
 struct BartonBandisCycles : BartonBandisClosure {
   static constexpr int n_history = 1;  ///< N_max, Pa
   Real retained = 0;                   ///< r
+  Real past = 0;                       ///< N_max at the start, Pa
 
   static constexpr const char *name = "Barton-Bandis with memory",
                               *meaning = "hyperbolic, with a part that unloading does not recover";
@@ -23,23 +24,37 @@ struct BartonBandisCycles : BartonBandisClosure {
     all.push_back(
         {&BartonBandisCycles::retained, Entry{"irrecoverable part of closure", "-", base::at_least(0).below(1),
                                               "fraction r of the closure under the largest compression so far"}});
+    all.push_back(
+        {&BartonBandisCycles::past,
+         Entry{"largest past compression", "Pa", base::at_least(0),
+               "largest compression of the joint before the start; of a joint in situ at least the initial one"}
+             .or_else(0)});
     return all;
   }
   static std::vector<Quantity<BartonBandisCycles>> quantities() {
     return {{"largest compression", "Pa", "that the joint has borne so far",
-             [](const BartonBandisCycles&, const Contact<Real>& at) -> Real { return at.history[0]; }}};
+             [](const BartonBandisCycles& law, const Contact<Real>& at) { return law.largest_compression(at); }}};
   }
 
   template <class T>
   KOKKOS_INLINE_FUNCTION T opening(const Contact<T>& at) const {
     const T now = BartonBandisClosure::opening(at);
     Contact<Real> largest;
-    largest.lambda_n = -at.history[0];
+    largest.lambda_n = -largest_compression(at);
     if (!(at.lambda_n > largest.lambda_n)) return now;
     return (1 - retained) * now + retained * BartonBandisClosure::opening(largest);
   }
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
     if (-at.lambda_n > history[0]) history[0] = -at.lambda_n;
+  }
+  /// Law of a joint under the compression N, Pa. Throws an Error if N exceeds a given largest past compression.
+  BartonBandisCycles in_situ(Real N, Real) const;
+
+ private:
+  /// N_max, Pa.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Real largest_compression(const Contact<T>& at) const {
+    return at.history[0] > past ? at.history[0] : past;
   }
 };
 

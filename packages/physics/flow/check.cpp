@@ -20,6 +20,7 @@ void compare_without_flow(Comparison& c) {
   for (const auto& [name, fracture] : c.scene().fractures) {
     if (!is_zero(fracture.source)) needs_flow("Fractures > " + name + " > \"source\"");
     if (!fracture.cuts.empty()) needs_flow("Fractures > " + name + " > \"cuts\"");
+    if (!fracture.held_pressures.empty()) needs_flow("Fractures > " + name + " > Held pressures");
   }
   for (const auto& [name, condition] : c.scene().boundary_conditions)
     if (condition.pressure || condition.flux)
@@ -63,6 +64,32 @@ void compare_wells(Comparison& c) {
   }
 }
 
+void compare_intersections(Comparison& c) {
+  for (const auto& [name, one] : c.scene().flow->intersections) {
+    const std::string section = "Flow > Intersections > " + name;
+    if (c.names().dim == 2) c.fail(section, "needs a mesh in 3D; in 2D, intersections are points");
+    for (const auto& fracture : one.fractures)
+      c.check_name(section, section + " > \"fractures\"", fracture, c.names().fractures);
+    for (std::size_t k = 1; k < one.fractures.size(); ++k)
+      if (std::count(one.fractures.begin(), one.fractures.begin() + k, one.fractures[k]) > 0)
+        c.fail(section + " > \"fractures\"", fmt::format("has \"{}\" twice", one.fractures[k]));
+  }
+}
+
+/// Reports pressures of fractures with boxes of another dimension, and those with transport of a quantity.
+void compare_held_pressures(Comparison& c) {
+  for (const auto& [name, fracture] : c.scene().fractures)
+    for (const auto& [held, one] : fracture.held_pressures) {
+      const std::string section = fmt::format("Fractures > {} > Held pressures > {}", name, held);
+      c.check_length(section + " > \"lower corner\"", one.lower_corner.size(), c.names().dim);
+      c.check_length(section + " > \"upper corner\"", one.upper_corner.size(), c.names().dim);
+      for_each_physics([&, &section = section]<HasTransport P>(P) {
+        for (const auto& carried : P::Transport::carried(c.scene()))
+          c.fail(section, fmt::format("not available with transport of the {}; use a well", carried.field));
+      });
+    }
+}
+
 bool gives_pressure(const BoundaryCondition& condition) {
   return condition.pressure && !(condition.conductance && is_zero(*condition.conductance));
 }
@@ -75,7 +102,8 @@ void compare_level(Comparison& c) {
   };
   const bool given = any(scene.flow->wells, [](const auto& well) { return well.pressure.has_value(); }) ||
                      any(scene.boundary_conditions, gives_pressure) ||
-                     any(scene.regions, [](const auto& region) { return region.pressure.has_value(); });
+                     any(scene.regions, [](const auto& region) { return region.pressure.has_value(); }) ||
+                     any(scene.fractures, [](const auto& fracture) { return !fracture.held_pressures.empty(); });
   const auto& [dim, regions, boundaries, fractures] = c.names();
   if (!regions || !fractures) return;
   const bool deforms = Mechanics::is_in(scene);
@@ -88,22 +116,24 @@ void compare_level(Comparison& c) {
   const bool known =
       c.is_sound("Boundary conditions") && (!scene.boundary_conditions.empty() || c.is_absent("Boundary conditions"));
   if (!given && !stored && known && c.is_sound("Materials") && c.is_sound("Flow"))
-    c.fail("Flow",
-           "the level of the pressure is not determined: give a \"pressure\" on a boundary, in a well or in a region, "
-           "or storage (\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
-           "\"compressibility\" of the fluid)");
+    c.fail(
+        "Flow",
+        "the level of the pressure is not determined: give a \"pressure\" on a boundary, in a well, in a region or on "
+        "a fracture, or storage (\"compressibility of pores\" or \"Biot modulus\" of the rock, or its \"porosity\" and "
+        "\"compressibility\" of the fluid)");
 }
 
 /// Reports fluxes or conductances where the pressure is prescribed.
 void compare_conditions(Comparison& c) {
-  const auto overlap = [](const BoundaryCondition& held, const BoundaryCondition& other) {
-    if (held.boundary != other.boundary) return false;
-    if (other.fracture) return held.fracture ? *held.fracture == *other.fracture : !held.region;
-    return !held.fracture && (!held.region || !other.region || *held.region == *other.region);
+  const auto overlap = [](const BoundaryCondition& constrained, const BoundaryCondition& other) {
+    if (constrained.boundary != other.boundary) return false;
+    if (other.fracture) return constrained.fracture ? *constrained.fracture == *other.fracture : !constrained.region;
+    return !constrained.fracture && (!constrained.region || !other.region || *constrained.region == *other.region);
   };
-  for (const auto& [name, held] : c.scene().boundary_conditions)
+  for (const auto& [name, constrained] : c.scene().boundary_conditions)
     for (const auto& [second, other] : c.scene().boundary_conditions)
-      if (held.pressure && !held.conductance && (other.flux || other.conductance) && overlap(held, other))
+      if (constrained.pressure && !constrained.conductance && (other.flux || other.conductance) &&
+          overlap(constrained, other))
         c.fail("Boundary conditions > " + second,
                fmt::format("gives a {} where \"{}\" gives the pressure", other.flux ? "flux" : "conductance", name));
 }
@@ -174,8 +204,12 @@ std::string Flow::Estimate::missing(const Scene& scene) {
     return "is of boundaries whose pressure or flux is given; not available with \"conductance\"";
   if (any(scene.regions, [](const auto& region) { return region.pressure.has_value(); }))
     return "is of pressures that are given on boundaries; not available with one of a region";
+  if (any(scene.fractures, [](const auto& fracture) { return !fracture.held_pressures.empty(); }))
+    return "is of pressures that are given on boundaries; not available with \"Held pressures\" of a fracture";
   if (any(scene.fractures, [](const auto& fracture) { return !fracture.cuts.empty(); }))
     return "is of fractures whose fillings are one; not available with \"cuts\"";
+  if (!flow.intersections.empty())
+    return "is of flow in rock and fractures; not available with \"Flow > Intersections\"";
   return "";
 }
 
@@ -231,6 +265,8 @@ void Flow::compare(Comparison& c) {
   compare_probes(c);
   if (!c.scene().flow) return;
   compare_wells(c);
+  compare_intersections(c);
+  compare_held_pressures(c);
   compare_level(c);
   compare_conditions(c);
   compare_impermeable(c);

@@ -82,8 +82,28 @@ void FlowSection::describe(base::Section& s) {
   s.choice(scheme, "scheme", {"auto", "rt0", "tpfa", "mimetic"},
            "flux scheme; rt0: mixed elements (Raviart and Thomas 1977); tpfa: two-point flux approximation; mimetic: "
            "mimetic differences; auto: rt0 on simplices, on other cells tpfa if permeability and cells are orthogonal, "
-           "else mimetic");
+           "else mimetic; along fractures not tpfa");
   s.named_sections(wells, "Wells", "wells by names of your choice");
+  s.named_sections(
+      intersections, "Intersections",
+      "channels along intersections in 3D, by names of your choice; several in one place conduct in parallel");
+}
+
+void IntersectionSection::describe(base::Section& s) {
+  s.entry(fractures, "fractures", "-",
+          "names of fractures: the channel is in the intersections at which all of them meet; a single name: all "
+          "intersections of this fracture; absent: all intersections");
+  s.entry(diameter, "diameter", "m", base::positive(),
+          "diameter d of a pipe with laminar flow, of the permeability times area pi d^4/128");
+  s.entry(permeability_area, "permeability times area", "m^4", base::positive(),
+          "permeability times cross-sectional area K of a channel of any shape: the flow is K/mu times the gradient of "
+          "the pressure");
+  if (s.complete() && diameter.has_value() == permeability_area.has_value())
+    s.fail("give either \"diameter\" or \"permeability times area\"");
+}
+
+Real IntersectionSection::conductance(Real viscosity) const {
+  return (diameter ? M_PI * std::pow(*diameter, 4) / 128 : *permeability_area) / viscosity;
 }
 
 void WellSection::describe(base::Section& s) {
@@ -121,6 +141,33 @@ void Flow::Fracture::describe(base::Section& s) {
   s.entry(cuts, "cuts", "-",
           "names of fractures that this fracture divides at their intersection, with \"Flow\": flow between the two "
           "parts crosses this fracture with its normal permeability");
+  s.named_sections(held_pressures, "Held pressures",
+                   "prescribed pressures at points or lines of the fracture, by names of your choice, with \"Flow\"");
+}
+
+std::vector<Prescribed> Flow::Fracture::prescribed() const {
+  std::vector<Prescribed> all;
+  for (const auto& [name, held] : held_pressures)
+    all.push_back({.field = "face pressure",
+                   .values = {held.pressure},
+                   .lower_corner = held.lower_corner,
+                   .upper_corner = held.upper_corner.empty() ? held.lower_corner : held.upper_corner,
+                   .section = "Held pressures > " + name});
+  return all;
+}
+
+void HeldPressureSection::describe(base::Section& s) {
+  s.required(
+      pressure, "pressure", "Pa", base::any(),
+      "prescribed pressure, a value or an expression of x, y, z, t, at the faces and edges of the fracture whose "
+      "corners all are in the box; in 2D an edge is a node");
+  s.required(lower_corner, "lower corner", "m", base::any(), "lowest coordinates of the box");
+  s.entry(upper_corner, "upper corner", "m", base::any(),
+          "highest coordinates of the box; empty: the \"lower corner\", a point, for 2D");
+  for (std::size_t i = 0; i < std::min(lower_corner.size(), upper_corner.size()); ++i)
+    if (upper_corner[i] < lower_corner[i])
+      s.fail("upper corner", fmt::format("[{}] is {}, must be at least {}, the value of \"lower corner\"", i,
+                                         upper_corner[i], lower_corner[i]));
 }
 
 void Flow::BoundaryCondition::describe(base::Section& s) {

@@ -1,7 +1,6 @@
 #include "physics/flow/flow.hpp"
 
 #include "base/check.hpp"
-#include "base/entry_of_place.hpp"
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint_parameters.hpp"
@@ -9,6 +8,7 @@
 #include "mesh/facets.hpp"
 #include "physics/comparison.hpp"
 #include "physics/flow/fluid_flux.hpp"
+#include "physics/flow/hydraulics.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/poroelasticity/poroelasticity.hpp"
 #include "physics/scene.hpp"
@@ -16,11 +16,13 @@
 #include "transport/balance_error.hpp"
 #include "transport/fracture_flow.hpp"
 #include "transport/hybrid_diffusion.hpp"
+#include "transport/intersection_flow.hpp"
 #include "transport/storage.hpp"
 #include "transport/well_connections.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace sprekk::physics {
@@ -48,69 +50,11 @@ std::vector<transport::Well> wells_in(const Scene& scene, int dim) {
   return wells;
 }
 
-/// Least distance of the sides of a joint under any compression, m. Dilation laws with a history have no bound, because
-/// reversed slip may close the joint further than slip has opened it.
-Real min_opening(const Material& joint, const std::array<Real, 3>& x) {
-  constexpr Real any_compression = 1e100;  // Pa
-  const Real zero = 0;                     // all history variables
-  const auto law = joint.joint(x).law;
-  if (laws::n_history(law.gap.dilation) > 0) return std::numeric_limits<Real>::lowest();
-  return law.gap.initial + law.closure(laws::Contact<Real>{.lambda_n = -any_compression, .history = {&zero, 0}});
-}
-
-/// Hydraulic data of a joint with an opening, m; none: the joint cannot open. Newton iterates may close the joint
-/// further than its law and block an injection. The aperture is therefore at least a fraction of that under infinite
-/// compression.
-transport::FractureFlowParameters::Face hydraulics(const Material& joint, Real viscosity,
-                                                   const std::optional<Real>& opening, const std::array<Real, 3>& x) {
-  constexpr Real part = 0.9;  // below 1, so that all solutions have larger apertures than this bound
-  const Real aperture = value_at("initial aperture", joint.initial_aperture, base::at_least(0), x),
-             residual = value_at("residual aperture", joint.residual_aperture, base::at_least(0), x),
-             a = std::max(aperture, residual),
-             of_iterates = opening ? part * std::max(Real(0), aperture + min_opening(joint, x)) : 0;
-  SPREKK_CHECK(a > 0,
-               "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
-               "or a \"residual aperture\"",
-               x[0], x[1], x[2]);
-  const auto& given = joint.tangential_permeability;
-  const Real k = given ? value_at("tangential permeability", *given, base::positive(), x) : 0,
-             across = value_at("normal permeability", joint.normal_permeability, base::positive_or_infinite(), x);
-  const auto walls = joint.walls(x);
-  const transport::FractureFlowParameters::Face face{
-      .along = {aperture + opening.value_or(0), std::max(residual, walls.hydraulic(of_iterates)), k, viscosity, walls},
-      .exchange = 2 * across / (a * viscosity)};
-  SPREKK_CHECK(face.along.hydraulic_aperture() > 0,
-               "the hydraulic aperture is {:.3g} at ({:.6g}, {:.6g}, {:.6g}) under the initial stress, must be above "
-               "0: give a \"residual aperture\", or an \"initial aperture\" above the closure",
-               face.along.hydraulic_aperture(), x[0], x[1], x[2]);
-  return face;
-}
-
-/// Openings of local fracture faces under the initial stress, m; none without mechanics. Collective.
-std::vector<std::optional<Real>> openings_of(const Setting& setting) {
-  std::vector<std::optional<Real>> openings(setting.mesh.fracture_faces.size());
-  if (Mechanics::is_in(setting.scene) && !setting.mesh.fracture_names.empty()) {
-    const auto initial = with_ghosts(setting.mesh, fields::Entity::fracture_face, initial_openings(setting));
-    openings.assign(initial.begin(), initial.end());
-  }
-  return openings;
-}
-
-/// Hydraulic data of local fracture faces. Collective.
-std::vector<transport::FractureFlowParameters::Face> hydraulics(const Setting& setting) {
-  const auto& scene = setting.scene;
-  const auto& mesh = setting.mesh;
-  const auto openings = openings_of(setting);
-  std::vector<transport::FractureFlowParameters::Face> faces;
-  base::collectively(*mesh.comm, [&] {
-    for (std::size_t f = 0; f < openings.size(); ++f) {
-      const auto& face = mesh.fracture_faces[f];
-      const auto& joint = joint_of(scene, mesh, face.single);
-      faces.push_back(
-          at_place(scene, joint, [&] { return hydraulics(joint, scene.flow->viscosity, openings[f], face.centre); }));
-    }
-  });
-  return faces;
+transport::Channel channel_of(const IntersectionSection& section, const Scene& scene, const mesh::Mesh& mesh) {
+  transport::Channel channel{.conductance = section.conductance(scene.flow->viscosity)};
+  for (const auto& name : section.fractures) channel.fractures.push_back(base::index_of(mesh.fracture_names, name));
+  std::sort(channel.fractures.begin(), channel.fractures.end());
+  return channel;
 }
 
 /// Quantities that the fluid transports for all physics of a scene.
@@ -150,9 +94,15 @@ transport::HybridDiffusionParameters darcy_flow(const Scene& scene, const mesh::
   return darcy;
 }
 
+/// Scheme along fractures. By default it is mixed on all cells, since apertures vary over a few faces.
+transport::FluxScheme scheme_in_fractures(const Scene& scene, transport::FluxScheme in_rock) {
+  const bool is_chosen = scheme_entry(scene).name == "auto" && in_rock == transport::FluxScheme::tpfa;
+  return is_chosen ? transport::FluxScheme::mimetic : in_rock;
+}
+
 transport::FractureFlowParameters fracture_flow(const Scene& scene, const mesh::Mesh& mesh,
                                                 const transport::HybridDiffusionParameters& darcy) {
-  transport::FractureFlowParameters fractures{.scheme = darcy.scheme,
+  transport::FractureFlowParameters fractures{.scheme = scheme_in_fractures(scene, darcy.scheme),
                                               .fluid = darcy.fluid,
                                               .change = darcy.change,
                                               .weight = darcy.weight,
@@ -171,6 +121,29 @@ transport::FractureFlowParameters fracture_flow(const Scene& scene, const mesh::
       fractures.cut_by[base::index_of(mesh.fracture_names, name)].push_back(static_cast<int>(k));
   }
   return fractures;
+}
+
+transport::IntersectionFlowParameters intersection_flow(const Setting& setting,
+                                                        const transport::HybridDiffusionParameters& darcy) {
+  const auto& [scene, mesh, start] = setting;
+  transport::IntersectionFlowParameters parameters{
+      .channels = {},
+      .constrained = dirichlet_conditions(scene.boundary_conditions, {}, names_of(mesh), "face pressure"),
+      .fluid = darcy.fluid,
+      .change = darcy.change,
+      .weight = darcy.weight};
+  for (const auto& [name, one] : scene.flow->intersections) parameters.channels.push_back(channel_of(one, scene, mesh));
+  return parameters;
+}
+
+/// Adds the flow in channels, and the transport by it. Collective.
+void add_intersections(const Setting& setting, const transport::HybridDiffusionParameters& darcy,
+                       const std::vector<CarriedQuantity>& all_carried, Modules& modules) {
+  if (setting.scene.flow->intersections.empty()) return;
+  const auto parameters = intersection_flow(setting, darcy);
+  modules.push_back(transport::make_intersection_flow(setting.mesh, parameters));
+  for (const auto& carried : all_carried)
+    modules.push_back(transport::make_intersection_advection(setting.mesh, parameters, carried));
 }
 
 /// Storage capacities of the pores in local cells. Collective.
@@ -204,6 +177,7 @@ Parts parts_of(const Setting& setting, const std::vector<CarriedQuantity>& all_c
   wells = {.wells = wells_in(scene, mesh.dim()),
            .mobility = darcy.mobility,
            .scheme = darcy.scheme,
+           .in_fractures = fractures.scheme,
            .fluid = darcy.fluid,
            .weight = darcy.weight,
            .carried = {all_carried.begin(), all_carried.end()}};
@@ -258,27 +232,39 @@ fields::Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh
       [&](const Material& rock, const auto& x) { return rock.mobility(mesh.dim(), scene.flow->viscosity, x); });
 }
 
-std::vector<StartAperture> start_apertures(const Setting& setting) {
-  const auto& [scene, mesh, start] = setting;
-  std::vector<StartAperture> apertures;
-  if (scene.flow) {
-    for (const auto& face : hydraulics(setting)) apertures.push_back({face.along.aperture, face.along.minimum});
-    return apertures;
-  }
-  const auto openings = openings_of(setting);
-  for (std::size_t f = 0; f < openings.size(); ++f) {
-    const auto& face = mesh.fracture_faces[f];
-    apertures.push_back(
-        {joint_of(scene, mesh, face.single).initial_aperture(face.centre, 0) + openings[f].value_or(0), 0});
-  }
-  return apertures;
-}
-
 transport::SchemeEntry scheme_entry(const Scene& scene) {
   return {.section = "Flow", .name = scene.flow ? scene.flow->scheme : "auto", .property = "permeability"};
 }
 
 namespace {
+
+/// Throws an Error for a held pressure without a facet in its box, with the nearest corner of the fracture. Collective.
+void check_held_pressures(const Setting& setting) {
+  const auto& [scene, mesh, start] = setting;
+  using mesh::operator-, mesh::operator+, mesh::operator*;
+  for (const auto& condition : dirichlet_conditions({}, {}, names_of(mesh), "face pressure", scene.fractures)) {
+    bool any = false;
+    assembly::for_each_facet_on_fracture(mesh, condition, [&](LocalIndex, const auto&) { any = true; });
+    if (base::on_any_rank(*mesh.comm, any)) continue;
+    const auto middle = 0.5 * (mesh::Vector((*condition.within)[0]) + mesh::Vector((*condition.within)[1]));
+    mesh::Vector nearest{};
+    Real distance = std::numeric_limits<Real>::max();
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+      for (int k = 0; k < mesh::n_face_corners(mesh.shape) && mesh.fracture_faces[f].fracture == condition.fracture;
+           ++k)
+        if (const auto x = mesh::face_corner(mesh, f, k); mesh::norm(x - middle) < distance) {
+          distance = mesh::norm(x - middle);
+          nearest = x;
+        }
+    const bool is_mine = distance == base::min_over_ranks(*mesh.comm, distance);
+    const int rank = base::max_over_ranks(*mesh.comm, is_mine ? mesh.comm->getRank() : -1);
+    for (Real& x : nearest) x = base::of_rank(*mesh.comm, rank, x);
+    throw Error(fmt::format(
+        "{}: Sprekk > {}: the box contains no {} of the fracture; the nearest corner is ({:.9g}, "
+        "{:.9g}, {:.9g})",
+        scene.origin, condition.name, mesh.dim() == 2 ? "node" : "edge", nearest[0], nearest[1], nearest[2]));
+  }
+}
 
 /// Adds flow and storage in rock. Collective.
 void add_rock(const Setting& setting, transport::HybridDiffusionParameters darcy, Modules& modules) {
@@ -307,14 +293,17 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   const bool deforms = Mechanics::is_in(scene);
   const auto all_carried = carried_in(scene);
   auto [darcy, fractures, wells] = parts_of(setting, all_carried);
+  check_held_pressures(setting);
   const auto change = darcy.change;
   transport::FractureStorageParameters in_fractures{
       .fluid = darcy.fluid, .initial = flow.initial_pressure, .widens = deforms, .change = change};
   for (const auto& face : fractures.faces) {
-    in_fractures.aperture.push_back(deforms ? face.along.aperture : face.along.mechanical_aperture());
-    in_fractures.minimum.push_back(face.along.minimum);
+    in_fractures.aperture.push_back(deforms ? face.along.initial_volume() : face.along.mechanical_aperture());
+    in_fractures.minimum.push_back(face.along.least_volume());
   }
+  if (deforms) base::collectively(*mesh.comm, [&] { in_fractures.share = filling_biot(scene, mesh); });
   const auto fluid = darcy.fluid;
+  add_intersections(setting, darcy, all_carried, modules);
   for (const auto& carried : all_carried) {
     const auto stored = [&](const auto& find) { return find ? std::optional(find(setting)) : std::nullopt; };
     modules.push_back(transport::make_advection(mesh.shape, {darcy, stabilisation(scene, mesh)}, carried,
@@ -342,7 +331,7 @@ FluidFlux fluid_flux(const Setting& setting) {
     all.flux.transmissivity.push_back(face.along.transmissivity());
   }
   const auto names = names_of(setting.mesh);
-  all.flux.held = dirichlet_conditions(setting.scene.boundary_conditions, {}, names, "face pressure");
+  all.flux.constrained = dirichlet_conditions(setting.scene.boundary_conditions, {}, names, "face pressure");
   return all;
 }
 
@@ -380,7 +369,7 @@ void add_closure_warnings(const Setting& setting, std::vector<std::string>& warn
   std::set<std::string> seen;
   for (std::size_t k = 0; k < mesh.single_fractures.size(); ++k) {
     const auto& joint = joint_of(scene, mesh, static_cast<int>(k));
-    if (!joint.is_uniform() || !joint.initial_aperture.is_constant()) continue;
+    if (!joint.is_uniform() || joint.is_in_situ()) continue;
     const auto law = joint.joint({}).law;
     const Real aperture = joint.initial_aperture({}, 0),
                closure = -law.closure(laws::Contact<Real>{.lambda_n = -compression, .history = {&zero, 0}});
@@ -408,6 +397,16 @@ void add_well_warnings(const Setting& setting, std::vector<std::string>& warning
         "the well is connected to the rock only", "if it should be on the fracture, give a point of the fracture"));
 }
 
+/// Warns about channels without an intersection. Collective.
+void add_channel_warnings(const Setting& setting, std::vector<std::string>& warnings) {
+  const auto& [scene, mesh, start] = setting;
+  for (const auto& [name, one] : scene.flow->intersections)
+    if (transport::length_of(channel_of(one, scene, mesh), mesh) == 0)
+      warnings.push_back(implausible(fmt::format("{}: Sprekk > Flow > Intersections > {}", scene.origin, name),
+                                     one.fractures.empty() ? "no fractures meet" : "its \"fractures\" do not meet",
+                                     "the channel has no effect", "remove it, or name fractures that intersect"));
+}
+
 }  // namespace
 
 std::vector<std::string> Flow::warnings(const Setting& setting) {
@@ -419,6 +418,7 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
       all.push_back(scene.origin + ": " + skew);
   add_closure_warnings(setting, all);
   add_well_warnings(setting, all);
+  add_channel_warnings(setting, all);
   return all;
 }
 

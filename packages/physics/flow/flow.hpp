@@ -24,6 +24,21 @@ struct WellSection {
   void describe(base::Section& section);
 };
 
+/// Channel along intersections of fractures in 3D.
+struct IntersectionSection {
+  std::vector<std::string> fractures;               ///< names; empty: all intersections
+  std::optional<Real> diameter, permeability_area;  ///< exactly one is given
+  Real conductance(Real viscosity) const;           ///< flow per pressure gradient, m^4/(Pa s)
+  void describe(base::Section& section);
+};
+
+/// Pressure prescribed at a point or along a line of a fracture.
+struct HeldPressureSection {
+  base::Expression pressure = 0;
+  std::vector<Real> lower_corner, upper_corner;  ///< box; no upper corner: a point
+  void describe(base::Section& section);
+};
+
 /// Fluid that flows through rock and fractures.
 struct FlowSection {
   bool rigid_rock = false;  ///< the rock does not deform; no mechanics
@@ -31,6 +46,7 @@ struct FlowSection {
   base::Expression source = 0, initial_pressure = 0;
   std::string scheme = "auto";
   std::map<std::string, WellSection> wells;
+  std::map<std::string, IntersectionSection> intersections;
   void describe(base::Section& section);
 };
 
@@ -80,7 +96,9 @@ struct Flow : Physics<Flow> {
   struct Fracture : Physics::Fracture {
     base::Expression source = 0;
     std::vector<std::string> cuts;  ///< names of fractures that the filling of this fracture divides
+    std::map<std::string, HeldPressureSection> held_pressures;
     void describe(base::Section& section);
+    std::vector<Prescribed> prescribed() const;
   };
 
   struct BoundaryCondition : Physics::BoundaryCondition {

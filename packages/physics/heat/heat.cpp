@@ -308,7 +308,7 @@ std::unique_ptr<estimate::MeshError> Heat::Estimate::mesh_error(const Setting& s
       error.flow.rock.exchange.push_back(2 * face.conductivity / face.aperture);
       error.flow.transmissivity.push_back(face.aperture * face.conductivity);
     }
-  error.flow.held = dirichlet_conditions(scene.boundary_conditions, {}, names_of(mesh), "face temperature");
+  error.flow.constrained = dirichlet_conditions(scene.boundary_conditions, {}, names_of(mesh), "face temperature");
   for (LocalIndex c = 0; system.has_rates() && c < mesh.n_owned_cells; ++c)
     error.storage.push_back(capacity.of_cell(mesh, c));
   if (scene.flow && scene.heat->fluid_capacity.value_or(0) > 0) {

@@ -65,7 +65,8 @@ std::map<std::string, bool> changed_rock(const mesh::Mesh& mesh, const Scene& be
 
 /// Strains and jumps are measured from the initial state, which has the initial stress.
 std::vector<std::string> Mechanics::fixed_entries() {
-  return {"initial stress", "lithostatic stress", "in-situ stress", "plastic jump"};
+  return {"initial stress", "lithostatic stress", "in-situ stress", "plastic jump",
+          "slip path",      "initial traction",   "unbroken"};
 }
 
 void Mechanics::Change::prepare(const mesh::Mesh& mesh, const Scene& before, Scene& after) {
@@ -110,18 +111,50 @@ std::vector<std::string> Mechanics::Change::refuses_in(const mesh::Mesh& mesh, c
   return lines;
 }
 
+namespace {
+
+/// Entry of friction that depends on the slip rate whose change would change the initial slip rate or state; or empty.
+/// Without an "initial state", the state follows from other entries.
+std::string changed_start(const Material& now, const Material& then) {
+  if (!now.depends_on_rate() || !then.depends_on_rate()) return "";
+  std::vector<std::string> entries = {"initial slip rate", "initial state"};
+  if (!now.entry("initial state"))
+    entries.insert(entries.end(),
+                   {"initial friction coefficient", "direct effect", "evolution effect", "state evolution distance",
+                    "reference slip rate", "reference friction coefficient"});
+  const auto text = [](const auto& value) { return value ? value->text() : std::string(); };
+  for (const auto& entry : entries)
+    if (text(now.entry(entry)) != text(then.entry(entry))) return entry;
+  return "";
+}
+
+}  // namespace
+
 std::vector<std::string> Mechanics::Change::refuses(const Scene& before, const Scene& after) {
   std::vector<std::string> lines;
   for (const auto& [name, fracture] : after.fractures) {
     const auto old = before.fractures.find(name);
     if (old == before.fractures.end() || !is_in(after)) continue;
-    const auto laws = laws_with_memory(after.materials.at(fracture.material)),
-               old_laws = laws_with_memory(before.materials.at(old->second.material));
+    const auto &now = after.materials.at(fracture.material), &then = before.materials.at(old->second.material);
+    if (now.reference_state != then.reference_state)
+      lines.push_back(fmt::format("Fractures > {}: \"reference state\": is {}, was {}", name, now.reference_state,
+                                  then.reference_state));
+    const auto laws = laws_with_memory(now), old_laws = laws_with_memory(then);
     if (!old_laws.empty() && laws != old_laws)
       lines.push_back(
           fmt::format("Fractures > {}: its laws with history variables become \"{}\", they were \"{}\"; other laws "
                       "cannot use these history variables",
                       name, fmt::join(laws, "\", \""), fmt::join(old_laws, "\", \"")));
+  }
+  for (const auto& [name, fracture] : after.fractures) {
+    const auto old = before.fractures.find(name);
+    if (old == before.fractures.end() || !is_in(after)) continue;
+    const auto &now = after.materials.at(fracture.material), &then = before.materials.at(old->second.material);
+    if (const auto entry = changed_start(now, then); !entry.empty())
+      lines.push_back(
+          fmt::format("Fractures > {}: \"{}\" of \"{}\" must not change: history variables are relative to the initial "
+                      "slip rate and state",
+                      name, entry, fracture.material));
   }
   if (!after.bulk.lithostatic_stress) return lines;
   const auto density = [](const Scene& scene) { return scene.material_of("bulk").density.value_or(0).text(); };

@@ -1,6 +1,7 @@
 // Checks of scenes with mechanics.
 #include "assembly/free_motion.hpp"
 #include "physics/comparison.hpp"
+#include "physics/mechanics/unbroken.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,13 @@ void check_stress(Comparison& c, const std::string& section, const std::vector<b
     c.fail(section + " > \"initial stress\"", "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
 }
 
+bool has_initial_stress(const Scene& scene) {
+  const auto& bulk = scene.bulk;
+  return !bulk.initial_stress.empty() || bulk.lithostatic_stress || bulk.in_situ_stress ||
+         std::any_of(scene.regions.begin(), scene.regions.end(),
+                     [](const auto& region) { return !region.second.initial_stress.empty(); });
+}
+
 void compare_rock(Comparison& c) {
   const auto& bulk = c.scene().bulk;
   c.check_length("Bulk > \"body force\"", bulk.body_force.size(), c.names().dim);
@@ -41,19 +49,57 @@ void compare_rock(Comparison& c) {
   });
 }
 
+void compare_stress_intensity(Comparison& c, const std::string& place) {
+  const auto& scene = c.scene();
+  if (!Mechanics::is_in(scene)) return c.fail(place, "is in rock that " + rigid_entry(scene) + " says does not deform");
+  if (scene.host_fluid) c.fail(place, "is not available with the pressure of a host");
+  if (has_solid_pressure(scene)) c.fail(place, "is not available in nearly incompressible rock");
+}
+
+void compare_prescribed_slip(Comparison& c, const std::string& name, const PrescribedSlip& slip) {
+  const auto dim = c.names().dim;
+  const auto section = fmt::format("Fractures > {} > prescribed slip", name);
+  if (!Mechanics::is_in(c.scene()))
+    return c.fail(section, "is in rock that " + rigid_entry(c.scene()) + " says does not deform");
+  c.check_length(section + " > \"slip\"", slip.slip.size(),
+                 !slip.direction.empty() ? std::optional(1)
+                 : dim                   ? std::optional(*dim - 1)
+                                         : std::nullopt);
+  for (const auto& [entry, vector] :
+       {std::pair("direction", slip.direction), std::pair("moving side", slip.moving_side),
+        std::pair("lower corner", slip.lower_corner), std::pair("upper corner", slip.upper_corner)})
+    c.check_length(fmt::format("{} > \"{}\"", section, entry), vector.size(), dim);
+}
+
 void compare_fractures(Comparison& c) {
   for (const auto& [name, fracture] : c.scene().fractures) {
+    if (fracture.stress_intensity)
+      compare_stress_intensity(c, fmt::format("Fractures > {} > \"stress intensity\"", name));
+    if (fracture.prescribed_slip) compare_prescribed_slip(c, name, *fracture.prescribed_slip);
     const std::string jump = fmt::format("Fractures > {} > \"plastic jump\"", name);
     c.check_length(jump, fracture.plastic_jump.size(),
                    c.names().dim ? std::optional(*c.names().dim - 1) : std::nullopt);
+    const std::string traction = fmt::format("Fractures > {} > \"initial traction\"", name);
+    c.check_length(traction, fracture.initial_traction.size(), c.names().dim);
     const auto* joint = c.joint_of(fracture);
     if (!Mechanics::is_in(c.scene())) {
-      if (!fracture.plastic_jump.empty())
-        c.fail(jump, "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
+      for (const auto& [place, given] :
+           {std::pair(jump, &fracture.plastic_jump), std::pair(traction, &fracture.initial_traction)})
+        if (!given->empty()) c.fail(place, "is of rock that " + rigid_entry(c.scene()) + " says does not deform");
+    } else if (!fracture.initial_traction.empty() && !has_initial_stress(c.scene()) && c.is_sound("Bulk")) {
+      c.fail(traction, "requires an \"initial stress\", a \"lithostatic stress\" or an \"in-situ stress\" of the rock");
     } else if (joint && c.is_sound("Flow")) {
       const std::string place = "Materials > " + fracture.material;
       for (const auto& [entry, what] : joint->missing())
         c.fail(entry.empty() ? place : fmt::format("{} > \"{}\"", place, entry), what);
+      if (joint->is_in_situ() && !has_initial_stress(c.scene()))
+        c.fail(place + " > \"reference state\"",
+               fmt::format("is {}; it requires an \"initial stress\", a \"lithostatic stress\" or an \"in-situ "
+                           "stress\"",
+                           joint->reference_state));
+      if (fracture.slip_path && !joint->is_in_situ())
+        c.fail(fmt::format("Fractures > {} > \"slip path\"", name),
+               "requires the \"reference state\" in situ of the joint");
       if (c.names().dim && *c.names().dim == 3)
         for (const auto& [entry, what] : joint->only_in_2d()) c.fail(fmt::format("{} > \"{}\"", place, entry), what);
     }
@@ -167,6 +213,32 @@ void check_boxes(Comparison& c, const mesh::GlobalMesh& mesh,
   }
 }
 
+/// Reports boxes of prescribed slip without a face, with the face nearest to the middle of the box.
+void check_slip_boxes(Comparison& c, const mesh::GlobalMesh& mesh) {
+  using mesh::operator-, mesh::operator+, mesh::operator*;
+  for (const auto& [name, fracture] : c.scene().fractures) {
+    const auto& slip = fracture.prescribed_slip;
+    if (!slip || slip->slip.empty() || slip->lower_corner.size() != static_cast<std::size_t>(mesh.dim()) ||
+        slip->upper_corner.size() != slip->lower_corner.size())
+      continue;
+    mesh::Vector middle{}, nearest{};
+    for (int i = 0; i < mesh.dim(); ++i) middle[i] = (slip->lower_corner[i] + slip->upper_corner[i]) / 2;
+    bool any = false;
+    Real distance = std::numeric_limits<Real>::infinity();
+    for (const auto& face : mesh.fracture_faces) {
+      if (mesh.fracture_names[face.fracture] != name) continue;
+      const auto centre = mesh::face_centre(mesh, face.cell[0], face.local_face[0]);
+      any = any || slip->contains(centre);
+      if (const Real d = mesh::norm(centre - middle); d < distance) std::tie(distance, nearest) = std::pair(d, centre);
+    }
+    if (!any)
+      c.fail(
+          fmt::format("Fractures > {} > prescribed slip > \"lower corner\"", name),
+          fmt::format("no face of the fracture has its centre in the box; the nearest is at ({:.9g}, {:.9g}, {:.9g})",
+                      nearest[0], nearest[1], nearest[2]));
+  }
+}
+
 /// Returns whether a condition can be evaluated at the end of the first step.
 bool can_be_evaluated(const Comparison& c, const BoundaryCondition& condition) {
   return (c.begin() && c.is_sound("Tables")) ||
@@ -179,6 +251,7 @@ bool can_be_evaluated(const Comparison& c, const BoundaryCondition& condition) {
 void Mechanics::compare(Comparison& c) {
   compare_rock(c);
   compare_fractures(c);
+  compare_unbroken(c);
   compare_conditions(c);
   compare_gravity(c);
   compare_lithostatic_stress(c);
@@ -187,14 +260,15 @@ void Mechanics::compare(Comparison& c) {
 
 void Mechanics::compare_mesh(Comparison& c, const mesh::GlobalMesh& mesh) {
   auto conditions = fitting_conditions(c);
-  const auto held = [&] { return dirichlet_conditions(conditions, {}, c.names(), "displacement"); };
+  const auto constrained = [&] { return dirichlet_conditions(conditions, {}, c.names(), "displacement"); };
   const bool all = conditions.size() == c.scene().boundary_conditions.size() &&
                    (conditions.empty() ? c.is_absent("Boundary conditions") : c.is_sound("Boundary conditions"));
-  check_boxes(c, mesh, held());
+  check_boxes(c, mesh, constrained());
+  check_slip_boxes(c, mesh);
   if (is_in(c.scene()) && all) c.fail_unconstrained(assembly::unconstrained(mesh, with_springs(c, conditions)));
   for (auto it = conditions.begin(); it != conditions.end();)
     it = can_be_evaluated(c, it->second) ? std::next(it) : conditions.erase(it);
-  for (const auto& conflict : assembly::find_conflicts(mesh, held(), c.begin().value_or(0))) c.add(conflict);
+  for (const auto& conflict : assembly::find_conflicts(mesh, constrained(), c.begin().value_or(0))) c.add(conflict);
 }
 
 }  // namespace sprekk::physics

@@ -76,17 +76,17 @@ View<Real***> boundary_mass(const mesh::Mesh& mesh, const ElasticFoundationParam
 
 /// Components of the displacement with a spring, of local nodes.
 std::vector<contact::Support> supports(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters) {
-  std::set<std::pair<LocalIndex, int>> held;
+  std::set<std::pair<LocalIndex, int>> constrained;
   for_each_sprung(mesh, parameters, [&](std::size_t, const auto& face) {
     for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k) {
       const int corner = mesh::face_nodes(mesh.shape)[face.local_face][k];
       const LocalIndex node = mesh.free_node(mesh.cells[face.cell * mesh.nodes_per_cell() + corner]);
       for (int i = 0; i < mesh.dim(); ++i)
-        if (parameters.stiffness[i] > 0) held.emplace(node * mesh.dim() + i, i);
+        if (parameters.stiffness[i] > 0) constrained.emplace(node * mesh.dim() + i, i);
     }
   });
   std::vector<contact::Support> all;
-  for (const auto& [unknown, component] : held) all.push_back({unknown, component});
+  for (const auto& [unknown, component] : constrained) all.push_back({unknown, component});
   return all;
 }
 

@@ -5,7 +5,10 @@
 #include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint_slopes.hpp"
+#include "laws/prescribed_jump.hpp"
+#include "laws/joint_start.hpp"
 #include "mesh/extents.hpp"
+#include "physics/mechanics/joint_constraint.hpp"
 #include "physics/mechanics/joint_operators.hpp"
 #include "physics/mechanics/jump_outputs.hpp"
 
@@ -18,19 +21,24 @@ namespace sprekk::physics {
 using assembly::Loop;
 using laws::ContactState;
 
-std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
-                                                   const ElasticPlasticJumpParameters& parameters) {
+std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh, const InitialStress& stress,
+                                                   const FluidPressure& fluid, Real time) {
   std::vector<std::array<Real, 3>> tractions(mesh.n_owned_fracture_faces);
-  const auto& stress = parameters.initial_stress;
-  const auto& fluid = parameters.fluid_pressure;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces && !stress.empty(); ++f) {
     const auto& face = mesh.fracture_faces[f];
+    if (!stress.of_fracture.empty() && !stress.of_fracture[face.fracture].empty()) {
+      const auto& given = stress.of_fracture[face.fracture];
+      for (std::size_t k = 0; k < given.size(); ++k)
+        tractions[f][k] = assembly::face_mean(mesh, face.cell[mesh::minus], face.local_face[mesh::minus],
+                                              [&](const auto&, const auto& x) { return given[k](x, 0); });
+      continue;
+    }
     for (const int side : {mesh::minus, mesh::plus}) {
       const auto mean = mean_initial_traction(stress, mesh, face, side);
       for (int k = 0; k < mesh.dim(); ++k)
         for (int i = 0; i < mesh.dim(); ++i) tractions[f][k] += face.frame[k][i] * mean[i] / 2;
     }
-    if (!fluid.empty()) tractions[f][0] += mean_fluid_pressure(fluid, mesh, face, mesh::minus, parameters.start);
+    if (!fluid.empty()) tractions[f][0] += mean_bearing_pressure(fluid, mesh, f, mesh::minus, time);
   }
   return tractions;
 }
@@ -39,6 +47,7 @@ namespace {
 
 template <int dim>
 class ElasticPlasticJump final : public assembly::Module,
+                                 public assembly::Loads,
                                  public assembly::InitialValues,
                                  public assembly::Steps,
                                  public assembly::ContactFaces,
@@ -64,6 +73,7 @@ class ElasticPlasticJump final : public assembly::Module,
     d.couplings = {{Loop::fracture_faces, "traction", {"displacement", "side bubble", "traction"}}};
     if (has_tips_) d.couplings[0].columns.push_back("tip displacement");
     d.stores = dissipates();
+    d.evolves = parameters_.depends_on_rate;
     if (dissipates()) d.couplings.push_back({Loop::fracture_faces, parameters_.power_to, d.couplings[0].columns});
     const auto face = fields::Entity::fracture_face;
     d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
@@ -78,6 +88,12 @@ class ElasticPlasticJump final : public assembly::Module,
   }
 
   void bind(const assembly::Context& context) override;
+  assembly::Scales loads(Real t) const override;
+  bool constant_load() const override {
+    const auto& slips = parameters_.prescribed_slips;
+    return std::all_of(slips.begin(), slips.end(), [](const auto& one) { return one.second.constant_in_time(); });
+  }
+  void set_time(Real t, const assembly::Scales&) override;
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     operators_->add_residual(at(state), state, r);
     if (dissipates()) operators_->add_power(at(state), state, r);
@@ -119,12 +135,16 @@ class ElasticPlasticJump final : public assembly::Module,
     Points points = points_;
     points.p_old = state.history[0];
     if (parameters_.n_history > 0) points.stored_history = state.history[2];
+    points.duration = state.dt;
     points.factor = state.contact.augmentation;
     points.proximal = state.contact.proximal;
     points.anchor = state.contact.anchor;
     return points;
   }
 
+  bool is_prescribed(LocalIndex f) const {
+    return !prescribed_.empty() && prescribed_[std::size_t(f) * dim + 1] != laws::not_prescribed;
+  }
   bool dissipates() const { return !parameters_.power_to.empty(); }
 
   /// Returns a function of the face with the history variables of the laws, on the host.
@@ -149,7 +169,9 @@ class ElasticPlasticJump final : public assembly::Module,
   }
   const laws::JointParameters& joint(LocalIndex f) const { return parameters_.joints.of_face(*mesh_, f); }
   const laws::Elasticity& elasticity(LocalIndex cell) const { return parameters_.elasticity.of_cell(*mesh_, cell); }
+  laws::JointStart start(LocalIndex f) const { return laws::start_of(joint(f), initial_tractions_[f], dim); }
   ConstView<Real**> initial_jump() const;  ///< w_0 [face, dim]
+  void add_rate_errors(const assembly::State& end, fields::StepErrors& errors) const;
   void for_each_jump(const assembly::State& state, const std::function<void(const JumpOfFace<dim>&)>& use) const;
   void set_points();
   void set_sizes();
@@ -158,9 +180,11 @@ class ElasticPlasticJump final : public assembly::Module,
   ElasticPlasticJumpParameters parameters_;
   bool contains_fluid_ = false;  // the fluid pressure is unknown
   RCP<const mesh::Mesh> mesh_;
-  std::vector<int> fields_;  // displacement, side bubble, traction[, tip displacement]
+  std::vector<std::array<Real, 3>> initial_tractions_;  // [owned face] Pa
+  std::vector<int> fields_;                             // displacement, side bubble, traction[, tip displacement]
   ConstView<laws::Joint*> laws_;
-  Points points_;  // without history variables
+  Points points_;                 // without history variables
+  std::vector<Real> prescribed_;  // as in prescribed_jumps()
   std::unique_ptr<JointOperators<dim>> operators_;
   View<Real*> softness_;           // [owned face]; only if laws have history variables
   View<Real*> merit_weight_;       // [owned row] compliance of a face, |f| h/(10 E): sum of weight R^2 is an energy
@@ -174,19 +198,21 @@ template <int dim>
 ConstView<Real**> ElasticPlasticJump<dim>::initial_jump() const {
   if (parameters_.initial_stress.empty()) return {};
   const base::HostTable<Real**> rest("initial jump", mesh_->n_owned_fracture_faces, dim);
-  const auto jumps = initial_jumps(*mesh_, parameters_);
-  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-    for (int k = 0; k < dim; ++k) rest(f, k) = jumps[f][k];
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+    const auto jump = start(f).jump;
+    for (int k = 0; k < dim; ++k) rest(f, k) = jump[k];
+  }
   return rest.on_device();
 }
 
-/// Sets the traction of the initial stress on faces under compression.
+/// Sets the traction of the initial stress on closed faces.
 template <int dim>
 void ElasticPlasticJump<dim>::initial(const assembly::Rows& x) const {
   const base::HostTable<Real*> traction(x[fields_[2]]);
-  const auto known = initial_tractions(*mesh_, parameters_);
-  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
-    for (int k = 0; k < dim; ++k) traction(f * dim + k) = known[f][0] < 0 ? known[f][k] : 0;
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+    const auto known = start(f).traction;
+    for (int k = 0; k < dim; ++k) traction(f * dim + k) = known[k];
+  }
   traction.on_device();
 }
 
@@ -196,11 +222,42 @@ void ElasticPlasticJump<dim>::initial_history(const std::vector<View<Real**>>& h
   for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
     for (int k = 0; k < dim - 1; ++k) p(f, k) = joint(f).plastic_jump[k];
   p.on_device();
+  const auto& joints = parameters_.joints.values;
+  if (parameters_.n_history == 0 || std::none_of(joints.begin(), joints.end(), [](auto& one) { return one.in_situ; }))
+    return;
+  const base::HostTable<Real**> of_laws(history[2]);
+  for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
+    const auto numbers = start(f).history;
+    for (int k = 0; k < joint(f).law.n_history(dim); ++k) of_laws(f, k) = numbers[k];
+  }
+  of_laws.on_device();
+}
+
+/// Displacement scale: largest prescribed jump.
+template <int dim>
+assembly::Scales ElasticPlasticJump<dim>::loads(Real t) const {
+  if (parameters_.prescribed_slips.empty()) return {};
+  Real largest = 0;
+  for (const Real jump : prescribed_jumps(parameters_.prescribed_slips, *mesh_, t))
+    if (jump != laws::not_prescribed) largest = std::max(largest, std::abs(jump));
+  return {{"displacement", largest}};
+}
+
+template <int dim>
+void ElasticPlasticJump<dim>::set_time(Real t, const assembly::Scales&) {
+  if (parameters_.prescribed_slips.empty() || (points_.prescribed.extent(0) > 0 && constant_load())) return;
+  prescribed_ = prescribed_jumps(parameters_.prescribed_slips, *mesh_, t);
+  const base::HostTable<Real**> prescribed("prescribed jump", mesh_->n_owned_fracture_faces, dim);
+  for (std::size_t k = 0; k < prescribed_.size(); ++k)
+    prescribed(static_cast<LocalIndex>(k / dim), k % dim) = prescribed_[k];
+  points_.prescribed = prescribed.on_device();
 }
 
 template <int dim>
 void ElasticPlasticJump<dim>::bind(const assembly::Context& context) {
   mesh_ = context.mesh();
+  initial_tractions_ =
+      initial_tractions(*mesh_, parameters_.initial_stress, parameters_.fluid_pressure, parameters_.start);
   fields_ = {context.field("displacement"), context.field("side bubble"), context.field("traction")};
   if (has_tips_) fields_.push_back(context.field("tip displacement"));
   if (contains_fluid_) pressure_ = context.field("face pressure");
@@ -262,12 +319,48 @@ void ElasticPlasticJump<dim>::commit(assembly::State& state) const {
       KOKKOS_LAMBDA(int f) { points.commit(f, end(f), history); });
 }
 
+/// Errors of slip that depends on its rate: relative error of the slip rate, weighted by the slip of the step, and of
+/// the state variable, weighted by the compression; error of the growth of instabilities, the largest of all faces.
+/// Unknown in the first step, which has no rate before it.
+template <int dim>
+void ElasticPlasticJump<dim>::add_rate_errors(const assembly::State& end, fields::StepErrors& errors) const {
+  const auto history = history_on_host(end);
+  std::vector<Real> sums(5, 0);  // slip, slip times error, force, force times error, faces without estimate
+  Real growth = 0;
+  for_each_face(end, [&](LocalIndex f, const Point& point) {
+    const auto& law = joint(f).law;
+    if (point.state == ContactState::open || !law.depends_on_rate() || is_prescribed(f)) return;
+    Real p[dim - 1] = {};
+    const Real compliance = law.compliance(laws::contact<dim>(point.traction[0], Real(0), p, point.p_old, history(f)));
+    for (int k = 1; k < dim; ++k) p[k - 1] = point.w[k] - compliance * point.traction[k];
+    const Real c_t = laws::augmentation(law, point.constant).tangential;
+    const auto at =
+        laws::converged<dim>(law, point.state, point.w, point.traction, p, point.p_old, history(f), end.dt, c_t);
+    const auto defect = law.defect_of_step(at);
+    const Real area = mesh_->fracture_faces[f].area, force = -area * point.traction[0];
+    if (defect.rate < 0) sums[4] += 1;
+    sums[0] += area * at.slip_of_step;
+    sums[1] += area * at.slip_of_step * defect.rate;
+    sums[2] += force;
+    sums[3] += force * defect.state;
+    growth = std::max(growth, defect.growth);
+  });
+  errors.push_back({"growth of instabilities", base::max_over_ranks(*mesh_->comm, growth), 2});
+  sums = base::sum_over_ranks(*mesh_->comm, sums);
+  const bool is_known = sums[4] == 0;
+  errors.push_back(
+      {"slip rate", is_known && sums[0] > 0 ? sums[1] / sums[0] : 0, is_known ? Real(2) : fields::StepError::unknown});
+  errors.push_back({"friction state", is_known && sums[2] > 0 ? sums[3] / sums[2] : 0,
+                    is_known ? Real(2) : fields::StepError::unknown});
+}
+
 /// Error of the slip direction. Slip follows the traction at the end of the step, but the traction rotates during the
 /// step. For an angle alpha between the tractions at both ends, the relative error is about sin(alpha)/2; it is zero
 /// for a reversal along the same line. Mean over faces that have slid, weighted by their shear forces.
 template <int dim>
 void ElasticPlasticJump<dim>::step_errors(const assembly::State& begin, const assembly::State& end,
                                           fields::StepErrors& errors) const {
+  if (parameters_.depends_on_rate) add_rate_errors(end, errors);
   if (dim == 2) return;
   const auto before = base::to_host(begin.x[fields_[2]]);
   std::vector<Real> sums(2, 0);  // of force times error, and of force
@@ -286,77 +379,47 @@ void ElasticPlasticJump<dim>::step_errors(const assembly::State& begin, const as
 
 /// Measures the split of the jump. |R| in the traction scale is insensitive to soft joints. Therefore |R_n|/c_n of
 /// closed faces and |R_t|/c_t of sticking and sliding faces are measured in the displacement scale, minus the rounding
-/// error of the jump.
+/// error of the jump. Slow slip of a step may be much smaller than displacements. If friction depends on the slip rate,
+/// |R_t|/c_t relative to the slip of the step is also measured; 1e-5 corresponds to the measure 1e-11.
 template <int dim>
 void ElasticPlasticJump<dim>::measure(const assembly::State& state, const assembly::Scales& scales,
                                       std::vector<fields::Measure>& measures) const {
-  Real largest = 0;
+  constexpr Real weight = 1e-6;
+  Real largest = 0, of_slip = 0;
+  const auto history = history_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     if (point.state == ContactState::open) return;
-    const auto c = laws::augmentation(joint(f).law, point.constant);
-    Real square = 0;
-    for (int i = 1; i < dim; ++i) square += point.R[i] * point.R[i];
-    const Real size = std::max(std::abs(point.R[0]) / c.normal, std::sqrt(square) / c.tangential) - point.rounding;
+    const auto& law = joint(f).law;
+    const laws::Contact<Real> at{
+        .lambda_n = point.traction[0], .dim = dim, .history = history(f), .duration = state.dt};
+    const bool rated = state.dt > 0 && law.depends_on_rate() && !is_prescribed(f);
+    auto c = laws::augmentation(law, point.constant);
+    if (rated) c.tangential = laws::rated_constant(law, at, c.tangential);
+    const Real compliance = rated ? law.compliance(at) : 0;
+    Real square = 0, slip = 0;
+    for (int i = 1; i < dim; ++i) {
+      square += point.R[i] * point.R[i];
+      const Real step = point.w[i] - compliance * point.traction[i] - point.p_old[i - 1];
+      slip += std::pow(step + point.R[i] / c.tangential, 2);
+    }
+    const Real error = std::sqrt(square) / c.tangential - point.rounding;
+    if (rated && point.state == ContactState::slip && slip > 0 && !(error * weight <= of_slip * std::sqrt(slip)))
+      of_slip = error * weight / std::sqrt(slip);
+    const Real size = std::max(std::abs(point.R[0]) / c.normal - point.rounding, error);
     if (!(size <= largest)) largest = size;
   });
   measures.push_back({"split of the jump", largest / scales.at("displacement")});
+  if (parameters_.depends_on_rate) measures.push_back({"slip of the step", of_slip});
 }
 
-/// Sets the contact constraints. Closed faces keep their gap. Sticking faces resist in all directions, sliding faces
-/// normal to their slip.
 template <int dim>
 void ElasticPlasticJump<dim>::add_contact_constraints(const assembly::State& state,
                                                       std::vector<contact::Constraint>& constraints) const {
   const auto history = history_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
-    const auto& frame = mesh_->fracture_faces[f].frame;
-    const auto& law = joint(f).law;
-    Real p[dim - 1] = {}, shear[dim - 1], widening[dim] = {1};  // widening: derivative of w_n - g in w
-    const auto contact = [&](Real normal, Real size) {
-      return laws::contact<dim>(normal, size, p, point.p_old, history(f));
-    };
-    const Real compliance = law.compliance(contact(point.traction[0], 0));
-    for (int k = 1; k < dim; ++k) {
-      shear[k - 1] = point.traction[k];
-      p[k - 1] = point.w[k] - compliance * shear[k - 1];
-    }
-    const Real slipped = laws::norm(p), sheared = laws::norm(shear);
-    const bool moved = laws::augmentation(law, point.constant).tangential * slipped > 1e-13 * sheared;
-    const Real dilates = laws::dilation_slope(law, contact(point.traction[0], slipped));
-    for (int k = 1; k < dim; ++k) {
-      const Real along = moved ? p[k - 1] / slipped : sheared > 0 ? shear[k - 1] / sheared : 0;
-      widening[k] = -dilates * along;
-    }
-    constraints[f].augmentation += point.constant;
     constraints[f].modulus = modulus_[f];
-    constraints[f].weakens = law.n_history() > 0;
-    constraints[f].gap += point.w[0] - law.normal_gap(contact(0, slipped));
-    constraints[f].limit += std::max(law.bound(contact(point.traction[0], slipped)), Real(0));
-    for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < dim; ++i) {
-        constraints[f].traction[i] += point.traction[k] * frame[k][i];
-        constraints[f].jump[i] += point.w[k] * frame[k][i];
-        constraints[f].away[i] += widening[k] * frame[k][i];
-        if (k > 0) constraints[f].slip[i] += (p[k - 1] - point.p_old[k - 1]) * frame[k][i];
-      }
-    Real bound[dim - 1];  // traction of the law; along the slip if there is any
-    for (int k = 1; k < dim; ++k) bound[k - 1] = point.traction[k] - point.R[k];
-    const Real size = laws::norm(bound);
-    for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < dim; ++i) constraints[f].excess[i] += point.R[k] * frame[k][i];
-    if (point.state == ContactState::open) return;
-    Real held[dim][dim] = {};
-    for (int k = 0; k < dim; ++k) held[0][k] = point.state == ContactState::slip || k == 0 ? widening[k] : 0;
-    for (int k = 1; k < dim; ++k)
-      for (int l = 1; l < dim; ++l)
-        if (point.state == ContactState::stick)
-          held[k][l] = k == l;
-        else if (size > 0)
-          held[k][l] = (k == l) - bound[k - 1] * bound[l - 1] / (size * size);
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j)
-        for (int k = 0; k < dim; ++k)
-          for (int l = 0; l < dim; ++l) constraints[f].held[i][j] += held[k][l] * frame[k][i] * frame[l][j];
+    add_constraint<dim>(joint(f).law, mesh_->fracture_faces[f].frame, point, history(f), is_prescribed(f),
+                        constraints[f]);
   });
 }
 
@@ -401,7 +464,7 @@ void ElasticPlasticJump<dim>::for_each_jump(const assembly::State& state,
   const auto history = history_on_host(state);
   for_each_face(state, [&](LocalIndex f, const Point& point) {
     const auto& face = mesh_->fracture_faces[f];
-    JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) == 1, history(f));
+    JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) == 1, history(f), is_prescribed(f));
     jump.has_slipped = slid(f, 0) > 0;
     jump.number = parameters_.joints.number_of(f, face.fracture);
     jump.shear_modulus = (elasticity(face.cell[0]).G + elasticity(face.cell[1]).G) / 2;
@@ -411,25 +474,6 @@ void ElasticPlasticJump<dim>::for_each_jump(const assembly::State& state,
 }
 
 }  // namespace
-
-std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const ElasticPlasticJumpParameters& parameters) {
-  auto jumps = initial_tractions(mesh, parameters);
-  if (parameters.initial_stress.empty()) return jumps;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-    const auto& joint = parameters.joints.of_face(mesh, f);
-    const auto& law = joint.law;
-    const auto& plastic = joint.plastic_jump;
-    const Real pressed = jumps[f][0];
-    const Real zero = 0;  // all history variables
-    laws::Contact<Real> at{.lambda_n = std::min(pressed, Real(0)), .dim = mesh.dim(), .history = {&zero, 0}};
-    const Real compliance = law.compliance(at);
-    at.plastic_slip = std::hypot(plastic[0], plastic[1]);
-    for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = plastic[k];
-    jumps[f][0] = law.normal_gap(at);
-    for (int k = 1; k < mesh.dim(); ++k) jumps[f][k] = plastic[k - 1] + compliance * jumps[f][k];
-  }
-  return jumps;
-}
 
 std::unique_ptr<assembly::Module> make_elastic_plastic_jump(const mesh::Mesh& mesh,
                                                             ElasticPlasticJumpParameters parameters) {

@@ -7,6 +7,7 @@
 #include "laws/joint_parameters.hpp"
 #include "laws/joint_quantities.hpp"
 #include "physics/mechanics/loads.hpp"
+#include "physics/mechanics/prescribed_slip.hpp"
 
 #include <array>
 #include <memory>
@@ -23,31 +24,30 @@ struct ElasticPlasticJumpParameters {
   /// solutions.
   Real augmentation = 0.3;
   FluidPressure fluid_pressure = {};
-  Real start = 0;                                    ///< time of the initial state, s
+  Real start = 0;  ///< time of the initial state, s
+  PrescribedSlips prescribed_slips = {};
   int n_history = 0;                                 ///< largest number of history variables per face, over all ranks
+  bool depends_on_rate = false;                      ///< friction of any rank depends on the slip rate
   std::vector<laws::JointQuantity> quantities = {};  ///< quantities that joints of any rank provide
   std::string power_to = "";  ///< facet field whose fracture rows receive the power of SlidingFace; empty: none
 };
 
-/// Mean of sigma_0 n + p n over both sides, in the frames of owned faces, Pa; zero without initial stress.
-std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh,
-                                                   const ElasticPlasticJumpParameters& parameters);
-
-/// Initial jumps w_0 of make_elastic_plastic_jump() in the frames of owned fracture faces, m.
-std::vector<std::array<Real, 3>> initial_jumps(const mesh::Mesh& mesh, const ElasticPlasticJumpParameters& parameters);
+/// Initial tractions of the contact in the frames of owned faces, Pa: those of InitialStress::of_fracture, elsewhere
+/// the mean of sigma_0 n + alpha_f p n over both sides at a time. Zero without initial stress.
+std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh, const InitialStress& stress,
+                                                   const FluidPressure& fluid, Real time);
 
 /// Creates the module that declares the unknown "traction" lambda (fracture faces, frame n, t1[, t2], Pa; tension
 /// positive). Its rows are the residual R(w, lambda) of laws/joint.hpp, Wollmann (2024), (9)-(14), with the jump
 ///   w = w_0 + mean over the face of R (u+ - u-),
 /// including bubbles: shares of the nodes + mean(b) R (beta+ - beta-).
 ///
-/// w_0 is the jump of the joint under the initial stress with the initial plastic jump p_0,
-///   w_0 = (g0 + tan(theta) |p_0| + B(lambda_n), p_0 + lambda_t/K_t),   lambda = mean(sigma_0 n) + p n over both sides,
-/// with the initial fluid pressure p. The initial state is thus at rest if sigma_0 is in equilibrium. w_0 is zero
-/// without initial stress.
+/// w_0 is the jump laws::start_of() of the joint under initial_tractions(), zero without initial stress. The initial
+/// state is thus at rest if sigma_0 is in equilibrium and the tractions are those of the rock.
 ///
 /// History variables:
-/// - plastic tangential jump p_old [face, dim - 1], set to w_t on open faces and w_t - lambda_t/K_t on sliding faces;
+/// - plastic tangential jump p_old [face, dim - 1], set to w_t on open faces, w_t - lambda_t/K_t on sliding faces and
+///   to a prescribed slip, see laws/prescribed_jump.hpp;
 /// - "slid" [face, 1]: 0 never, 1 in the last step, 2 before;
 /// - "history of laws" [face, n_history], if any, updated by the laws;
 /// - with these "runaway slip" [face, 1]: largest unstable slip of a step so far, see laws/runaway.hpp.

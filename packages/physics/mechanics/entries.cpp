@@ -117,10 +117,25 @@ void Mechanics::Region::describe(base::Section& s) {
 void Mechanics::Fracture::describe(base::Section& s) {
   s.entry(fluid_pressure, "fluid pressure", "Pa", base::any(),
           "prescribed fluid pressure p in the fracture, a value or an expression of x, y, z, t; the traction on the "
-          "rock is lambda - p n");
+          "rock is lambda - alpha p n with the \"Biot coefficient\" alpha of the joint");
+  entry_of_place(s, initial_traction, "initial traction", "Pa", base::any(),
+                 "initial traction lambda of the contact in the frame of the face, tension positive: n, t in 2D; n, "
+                 "t1, t2 in 3D; values or expressions of x, y, z; absent: that of the initial stress and pressure");
   entry_of_place(s, plastic_jump, "plastic jump", "m", base::any(),
                  "initial tangential plastic jump in the frame of the face: t in 2D, t1, t2 in 3D; values or "
                  "expressions of x, y, z");
+  entry_of_place(
+      s, slip_path, "slip path", "m", base::at_least(0),
+      "length of the path of the initial slip, of joints with a \"reference state\" in situ; absent: the size "
+      "of the plastic jump");
+  entry_of_place(s, unbroken, "unbroken", "-", base::any(),
+                 "part that is bonded at the start: faces at whose centre this value or expression of x, y, z is above "
+                 "0; they have no jump, no conduit and no fluid until the bond opens; other faces have no bond; "
+                 "requires the bond \"linear softening\"; absent: bond and conduit everywhere");
+  s.entry(stress_intensity, "stress intensity", "-",
+          "switch for stress intensity factors and energy release rates at the tips, in 3D along the front, written to "
+          "results.json and stress_intensity.csv");
+  s.section(prescribed_slip, "prescribed slip", "slip as a function of position and time, in place of friction");
 }
 
 void Mechanics::BoundaryCondition::describe(base::Section& s) {

@@ -116,8 +116,7 @@ class InterfaceTractionBalance final : public assembly::Module, public assembly:
     if (fluid.empty() || (op_->pressure.extent(0) > 0 && fluid.constant_in_time())) return;
     const auto sides = assembly::fracture_sides(*mesh_);
     std::vector<Real> pressure;
-    for (const auto& [f, side] : sides)
-      pressure.push_back(mean_fluid_pressure(fluid, *mesh_, mesh_->fracture_faces[f], side, t));
+    for (const auto& [f, side] : sides) pressure.push_back(mean_bearing_pressure(fluid, *mesh_, f, side, t));
     op_->pressure = assembly::to_device(pressure, "pressure");
   }
 

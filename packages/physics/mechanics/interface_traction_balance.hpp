@@ -29,8 +29,9 @@ struct InterfaceTractionBalanceParameters {
 ///
 /// An initial stress adds integral sigma_0 : grad(b e_i) to the side bubble rows. Both kinds of rows also receive
 ///   s integral (sigma_0 n - mean(sigma_0 n)) . v over the face.
-/// An initial equilibrium thus has zero displacement, although lambda is constant on a face. With fluid, lambda - p n
-/// replaces lambda, where p is the mean pressure on the face. Output: "fluid pressure" (fracture faces, Pa).
+/// An initial equilibrium thus has zero displacement, although lambda is constant on a face. With fluid,
+/// lambda - alpha_f p n replaces lambda, see FluidPressure, where p is the mean pressure on the face. Output: "fluid
+/// pressure" (fracture faces, Pa).
 std::unique_ptr<assembly::Module> make_interface_traction_balance(mesh::Shape shape,
                                                                   InterfaceTractionBalanceParameters parameters);
 

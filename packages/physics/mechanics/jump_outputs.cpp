@@ -27,10 +27,15 @@ std::optional<Real> moment_magnitude(const std::vector<Real>& moment) {
 
 template <int dim>
 JumpOfFace<dim>::JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::JointPoint<dim>& point,
-                            const laws::JointParameters& joint, bool slid, const laws::History& history)
+                            const laws::JointParameters& joint, bool slid, const laws::History& history,
+                            bool prescribed)
     : face(face), point(point), state(slid ? laws::ContactState::slip : laws::ContactState::stick) {
   if (point.state == laws::ContactState::open) state = laws::ContactState::open;
   laws::split_jump<dim>(joint.law, state, point.w, point.traction, point.p_old, elastic, plastic, history);
+  for (int i = 1; i < dim && prescribed; ++i) {
+    plastic[i] = point.p_old[i - 1];
+    elastic[i] = point.w[i] - plastic[i];
+  }
   Real tangential[dim - 1], since_start[dim - 1];
   for (int i = 0; i < dim - 1; ++i) {
     tangential[i] = plastic[i + 1];

@@ -8,8 +8,8 @@
 
 namespace sprekk::physics {
 
-/// Joint of a face at the end of a step. The state of a face that slid in the step is on the friction limit of its
-/// present plastic jump.
+/// Joint of a face at the end of a step. `prescribed`: its slip is given, also if it is open. The state of a face that
+/// slid in the step is on the friction limit of its present plastic jump.
 template <int dim>
 struct JumpOfFace {
   const mesh::Mesh::FractureFace& face;
@@ -23,7 +23,7 @@ struct JumpOfFace {
   Real runaway = 0;          ///< history variable "runaway slip", m
 
   JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::JointPoint<dim>& point,
-             const laws::JointParameters& joint, bool slid, const laws::History& history);
+             const laws::JointParameters& joint, bool slid, const laws::History& history, bool prescribed);
 };
 
 /// Calls use(jump) for each owned fracture face.

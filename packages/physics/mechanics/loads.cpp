@@ -32,6 +32,11 @@ Real mean_fluid_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, con
                              [&](const auto&, const auto& x) { return p(x, t); });
 }
 
+Real mean_bearing_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, LocalIndex face, int side, Real t) {
+  const Real p = mean_fluid_pressure(fluid, mesh, mesh.fracture_faces[face], side, t);
+  return fluid.biot.empty() ? p : fluid.biot[face] * p;
+}
+
 std::array<Real, 3> mean_initial_traction(const InitialStress& stress, const mesh::Mesh& mesh,
                                           const mesh::Mesh::FractureFace& face, int side) {
   std::array<Real, 3> sum{};

@@ -32,6 +32,9 @@ struct BodyForce {
 /// Components XX, YY, ZZ, XY in 2D; XX, YY, ZZ, XY, YZ, XZ in 3D. Empty: none.
 struct InitialStress {
   std::vector<std::vector<base::Expression>> value = {};  ///< [region, component]
+  /// [fracture, component] traction of the contact in the frame of the face, Pa, tension positive, in place of that of
+  /// the rock; no components: as in the rock.
+  std::vector<std::vector<base::Expression>> of_fracture = {};
 
   bool empty() const { return value.empty(); }
   const std::vector<base::Expression>& of_cell(const mesh::Mesh& mesh, LocalIndex cell) const {
@@ -58,10 +61,11 @@ struct InitialStress {
                                const std::array<Real, 3>& n) const;
 };
 
-/// Pressure p of a fluid in the fractures, Pa, compression positive: the traction on the rock is lambda - p n. Empty:
-/// none.
+/// Pressure p of a fluid in the fractures, Pa, compression positive: the traction on the rock is lambda - alpha_f p n
+/// with Biot's coefficient alpha_f of the filling. Empty: none.
 struct FluidPressure {
   std::vector<base::Expression> value = {};  ///< [fracture]
+  std::vector<Real> biot = {};               ///< [local fracture face] alpha_f, see filling_biot(); empty: 1
 
   bool empty() const { return value.empty(); }
   bool constant_in_time() const {
@@ -72,6 +76,9 @@ struct FluidPressure {
 /// Mean of the fluid pressure over a fracture face at time t, Pa, on the face of the cell on `side`.
 Real mean_fluid_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
                          int side, Real t);
+
+/// The same mean times Biot's coefficient of the filling.
+Real mean_bearing_pressure(const FluidPressure& fluid, const mesh::Mesh& mesh, LocalIndex face, int side, Real t);
 
 /// Mean of sigma_0 n over a fracture face, n from minus to plus, on the face of the cell on `side`; global components,
 /// Pa.

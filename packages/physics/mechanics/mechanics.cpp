@@ -3,17 +3,21 @@
 #include "base/entry_of_place.hpp"
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
+#include "laws/joint_start.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/tips.hpp"
 #include "physics/mechanics/mechanics_error.hpp"
 #include "physics/mechanics/modules.hpp"
 #include "physics/mechanics/release.hpp"
 #include "physics/mechanics/solid_pressure.hpp"
+#include "physics/mechanics/unbroken.hpp"
 #include "physics/mechanics/uniqueness.hpp"
+#include "physics/poroelasticity/poroelasticity.hpp"
 #include "physics/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sprekk::physics {
 
@@ -25,9 +29,32 @@ Real mean(const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face, const ba
                              [&](const auto&, const auto& x) { return value(x, 0); });
 }
 
+/// Unloaded joint of a face, from the aperture under its initial traction. A changed scene may describe a joint that
+/// could not have been in the initial state.
+laws::JointParameters unloaded(const Scene& scene, const mesh::Mesh& mesh, const Material& material,
+                               const laws::JointParameters& measured, const mesh::Mesh::FractureFace& face,
+                               const std::array<Real, 3>& traction) {
+  try {
+    const auto joint = laws::unloaded(measured, traction, mesh.dim());
+    if (scene.is_continued) return joint;
+    laws::check_start(joint, laws::start_of(joint, traction, mesh.dim()), traction);
+    if (!has_fluid(scene)) return joint;
+    const Real hydraulic = material.walls(face.centre).hydraulic(measured.initial_aperture);
+    SPREKK_CHECK(hydraulic >= (1 - 1e-12) * measured.min_aperture,
+                 "\"initial aperture\": the hydraulic aperture in situ is {:.6g} m; it must be at least the \"residual "
+                 "aperture\", {:.6g} m",
+                 hydraulic, measured.min_aperture);
+    return joint;
+  } catch (const Error& error) {
+    throw Error(fmt::format("fracture \"{}\" at ({:.6g}, {:.6g}, {:.6g}): {}", mesh.single_fractures[face.single].name,
+                            face.centre[0], face.centre[1], face.centre[2], error.what()));
+  }
+}
+
 /// Joint parameters of faces: the law at the face centre, with the face means of the gap and of the initial plastic
-/// jump, since jumps are means too.
-fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh) {
+/// jump, since jumps are means too. `tractions`: of owned faces, for joints in situ.
+fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh::Mesh& mesh,
+                                                 const std::vector<std::array<Real, 3>>& tractions) {
   const bool own = !scene.own_joints.empty();  // groups: single fractures or fracture sets
   const auto section = [&](int group) -> const Fracture& {
     return scene.fractures.at(mesh.fracture_names[own ? mesh.single_fractures[group].set : group]);
@@ -42,7 +69,8 @@ fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh:
       static_cast<int>(own ? mesh.single_fractures.size() : mesh.fracture_names.size()), group_of,
       [&](int fracture) {
         const auto& jump = section(fracture).plastic_jump;
-        return material(fracture).is_uniform() && material(fracture).residual_aperture.is_constant() &&
+        return material(fracture).is_uniform() && !material(fracture).is_in_situ() &&
+               material(fracture).residual_aperture.is_constant() && !section(fracture).unbroken &&
                std::all_of(jump.begin(), jump.end(), [](const auto& value) { return value.is_constant(); });
       },
       [&](int fracture, int f) {
@@ -59,36 +87,37 @@ fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh:
         const auto& face = mesh.fracture_faces[f];
         if (const auto& gap = material(fracture).initial_gap; !gap.is_constant())
           joint.law.gap.initial = mean(mesh, face, gap);
-        return joint;
+        if (section(fracture).unbroken) set_bond(joint, is_unbroken(scene, mesh, face));
+        if (!joint.in_situ) return joint;
+        if (const auto& path = section(fracture).slip_path) joint.slip_path = mean(mesh, face, *path);
+        return at_place(scene, material(fracture),
+                        [&] { return unloaded(scene, mesh, material(fracture), joint, face, tractions[f]); });
       });
   if (own && result.number.empty()) result.number = group_of;
   return result;
 }
 
-BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
-  BodyForce force{scene.bulk.body_force, scene.bulk.gravity, {}};
-  if (force.gravity.empty()) return force;
-  const auto density = by_cell(
-      scene, mesh, [](const Material& rock) { return rock.density->is_constant(); },
-      [](const Material& rock, const auto& x) { return rock.density_at(x); });
-  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) force.density_of_cell.push_back(density.of_cell(mesh, cell));
-  return force;
-}
-
 /// Prescribed fluid pressure in fractures; with flow, the initial pressure.
-FluidPressure fluid_pressure(const Scene& scene, const std::vector<std::string>& fracture_names) {
-  FluidPressure fluid;
+FluidPressure fluid_pressure(const Scene& scene, const mesh::Mesh& mesh) {
+  FluidPressure fluid{{}, filling_biot(scene, mesh)};
   if (has_fluid(scene)) {
     if (!is_zero(initial_pressure(scene)) || has_unknown_pressure(scene))
-      fluid.value.assign(fracture_names.size(), initial_pressure(scene));
+      fluid.value.assign(mesh.fracture_names.size(), initial_pressure(scene));
     return fluid;
   }
   bool any = false;
-  for (const auto& name : fracture_names) {
+  for (const auto& name : mesh.fracture_names) {
     const auto& p = fluid.value.emplace_back(scene.fractures.at(name).fluid_pressure);
     any = any || !is_zero(p);
   }
   return any ? fluid : FluidPressure();
+}
+
+PrescribedSlips prescribed_slips(const Scene& scene, const std::vector<std::string>& fracture_names) {
+  PrescribedSlips slips;
+  for (const auto& name : fracture_names)
+    if (const auto& slip = scene.fractures.at(name).prescribed_slip; slip && !slip->slip.empty()) slips[name] = *slip;
+  return slips;
 }
 
 /// Field that receives the power of friction; empty: none.
@@ -133,15 +162,17 @@ MechanicsParameters parameters_of(const Setting& setting) {
                            .stiffness = {k[0], k[1], k.size() > 2 ? k[2] : 0},
                            .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1};
   if (mesh.fracture_names.empty()) return {.bulk = bulk, .foundations = foundations, .solid_modulus = modulus};
-  const auto fluid = fluid_pressure(scene, mesh.fracture_names);
+  const auto fluid = fluid_pressure(scene, mesh);
+  const auto tractions = initial_tractions(mesh, bulk.initial_stress, fluid, start);
   const bool unknown = has_unknown_pressure(scene);
   return {.bulk = bulk,
           .foundations = foundations,
           .solid_modulus = modulus,
-          .joints = joints(scene, mesh),
+          .joints = joints(scene, mesh, tractions),
           .fluid_pressure = unknown ? FluidPressure() : fluid,
           .initial_pressure = unknown ? fluid : FluidPressure(),
           .start = start,
+          .prescribed_slips = prescribed_slips(scene, mesh.fracture_names),
           .augmentation = scene.augmentation,
           .power_to = power_to(scene)};
 }
@@ -169,7 +200,26 @@ bool has_tips(const mesh::Mesh& mesh) {
   return base::any_rank(*mesh.comm, [&] { return has(tips); });
 }
 
+/// Least normal jump under any compression, m. Dilation laws with history variables have no bound, because reversed
+/// slip may close the joint further than slip has opened it.
+Real least_opening(const laws::Joint& law) {
+  constexpr Real any_compression = 1e100;  // Pa
+  const Real zero = 0;                     // all history variables
+  if (laws::n_history(law.gap.dilation) > 0) return std::numeric_limits<Real>::lowest();
+  return law.gap.initial + law.closure(laws::Contact<Real>{.lambda_n = -any_compression, .history = {&zero, 0}});
+}
+
 }  // namespace
+
+BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh) {
+  BodyForce force{scene.bulk.body_force, scene.bulk.gravity, {}};
+  if (force.gravity.empty()) return force;
+  const auto density = by_cell(
+      scene, mesh, [](const Material& rock) { return rock.density->is_constant(); },
+      [](const Material& rock, const auto& x) { return rock.density_at(x); });
+  for (LocalIndex cell = 0; cell < mesh.n_cells(); ++cell) force.density_of_cell.push_back(density.of_cell(mesh, cell));
+  return force;
+}
 
 bool has_solid_pressure(const Scene& scene, int order) {
   bool alone = true;
@@ -248,31 +298,54 @@ InitialStress initial_stress(const Scene& scene, const mesh::Mesh& mesh) {
   }
   if (n_components == 0) return {};
   for (auto& components : stress.value) components.resize(n_components, base::Expression(0));
+  for (const auto& name : mesh.fracture_names) stress.of_fracture.push_back(scene.fractures.at(name).initial_traction);
   return stress;
 }
 
-std::vector<Real> initial_openings(const Setting& setting) {
-  std::vector<Real> openings;
-  base::collectively(*setting.mesh.comm, [&] {
-    for (const auto& jump : initial_jumps(setting.mesh, jump_parameters(setting.mesh, parameters_of(setting))))
-      openings.push_back(jump[0]);
-  });
-  return openings;
+namespace {
+
+/// Length of the cohesive zone, see StartOfFace. `compression`: effective, Pa.
+Real cohesive_zone(const laws::Joint& law, const laws::Elasticity& rock, Real compression, int dim) {
+  const Real weakening = laws::if_rated<Real>(law.friction, [](const auto& one) { return one.weakening(); });
+  const Real stiffness = dim == 3 ? rock.G : 2 * rock.G * (rock.lambda + rock.G) / (rock.lambda + 2 * rock.G);
+  if (!(compression * weakening > 0)) return std::numeric_limits<Real>::infinity();
+  return 9 * M_PI / 32 * stiffness / (compression * weakening);
 }
+
+Real local_compliance(const mesh::Mesh& mesh, LocalIndex f, const laws::Elasticity& rock, Real of_joint) {
+  const auto& [G, lambda] = rock;
+  const Real size = std::pow(mesh.fracture_faces[f].area, 1.0 / (mesh.dim() - 1)),
+             of_rock = G * (lambda + G) / ((lambda + 2 * G) * size);
+  return of_joint / (1 + of_joint * of_rock);
+}
+
+}  // namespace
 
 std::vector<StartOfFace> starts_of_faces(const Setting& setting) {
   std::vector<StartOfFace> starts;
-  base::collectively(*setting.mesh.comm, [&] {
-    const auto parameters = jump_parameters(setting.mesh, parameters_of(setting));
-    if (parameters.initial_stress.empty()) return;
-    const auto tractions = initial_tractions(setting.mesh, parameters);
-    const Real zero = 0;  // all history variables
-    for (LocalIndex f = 0; f < setting.mesh.n_owned_fracture_faces; ++f) {
-      const auto& joint = parameters.joints.of_face(setting.mesh, f);
-      laws::Contact<Real> at{.lambda_n = tractions[f][0], .dim = setting.mesh.dim(), .history = {&zero, 0}};
-      at.plastic_slip = std::hypot(joint.plastic_jump[0], joint.plastic_jump[1]);
-      for (int k = 0; k < 2; ++k) at.plastic_jump[k] = at.last_plastic_jump[k] = joint.plastic_jump[k];
-      starts.push_back({tractions[f], joint.law.bound(at)});
+  const auto& mesh = setting.mesh;
+  base::collectively(*mesh.comm, [&] {
+    const auto parameters = jump_parameters(mesh, parameters_of(setting));
+    const auto rock = elasticity(setting.scene, mesh);
+    const auto tractions =
+        initial_tractions(mesh, parameters.initial_stress, parameters.fluid_pressure, parameters.start);
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      const auto& joint = parameters.joints.of_face(mesh, f);
+      const auto start = laws::start_of(joint, tractions[f], mesh.dim());
+      const auto& of_face = rock.of_cell(mesh, mesh.fracture_faces[f].cell[mesh::minus]);
+      starts.push_back({.traction = tractions[f],
+                        .bound = start.bound,
+                        .depends_on_rate = joint.law.depends_on_rate(),
+                        .unloaded_aperture = joint.initial_aperture,
+                        .opening = parameters.initial_stress.empty() ? 0 : start.jump[0],
+                        .least_opening = least_opening(joint.law),
+                        .overlap = std::numeric_limits<Real>::infinity(),
+                        .smaller_aperture = 0,
+                        .cohesive_zone = cohesive_zone(joint.law, of_face, -tractions[f][0], mesh.dim()),
+                        .compliance = local_compliance(mesh, f, of_face, laws::normal_compliance(joint.law, start))});
+      if (!joint.in_situ) continue;
+      starts.back().overlap = laws::overlap_compression(joint, start);
+      starts.back().smaller_aperture = laws::smaller_aperture(joint, start);
     }
   });
   return starts;
@@ -289,11 +362,16 @@ void Mechanics::add_modules(const Setting& setting, Modules& modules) {
 
 std::vector<std::string> Mechanics::warnings(const Setting& setting) {
   const auto& mesh = setting.mesh;
-  if (!is_in(setting.scene) || mesh.dim() != 3 || mesh::order(mesh.shape) != 1 || !has_tips(mesh)) return {};
-  return {
-      fmt::format("{}: fractures end inside of the rock: in 3D their slip and opening are a few percent too small with "
-                  "cells of \"order\" 1; 2 is more accurate, also with the same number of unknowns",
-                  setting.scene.origin)};
+  if (!is_in(setting.scene)) return {};
+  auto all = process_zone_warnings(setting);
+  if (auto one = notch_doubt(setting.scene); !one.empty()) all.push_back(std::move(one));
+  if (mesh.dim() == 3 && mesh::order(mesh.shape) == 1 && has_tips(mesh))
+    all.push_back(fmt::format(
+        "{}: fractures end inside of the rock: in 3D their slip and opening are too small with "
+        "cells of \"order\" 1; 2 is more accurate, also with the same number of unknowns. The fewer faces a "
+        "fracture has, the larger is the difference",
+        setting.scene.origin));
+  return all;
 }
 
 std::vector<std::string> Mechanics::Warnings::of_state(const Setting& setting, const std::vector<Real>&,
@@ -314,6 +392,14 @@ std::vector<std::string> Mechanics::Warnings::of_state(const Setting& setting, c
                       "results.json is the largest such slip",
                       scene.origin, mesh.fracture_names[k]));
   return warnings;
+}
+
+EventSource Mechanics::Events::source() {
+  return {.path = "plastic jump local",
+          .force = "traction local",
+          .density = "moment density",
+          .drop = "stress_drop",
+          .drop_unit = "Pa"};
 }
 
 std::string Mechanics::Estimate::missing(const Scene& scene) {

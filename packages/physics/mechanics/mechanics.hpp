@@ -6,6 +6,7 @@
 #include "laws/elasticity.hpp"
 #include "laws/joint_material.hpp"
 #include "physics/mechanics/loads.hpp"
+#include "physics/mechanics/prescribed_slip.hpp"
 #include "physics/physics.hpp"
 
 #include <optional>
@@ -75,7 +76,12 @@ struct Mechanics : Physics<Mechanics> {
 
   struct Fracture : Physics::Fracture {
     base::Expression fluid_pressure = 0;
-    std::vector<base::Expression> plastic_jump;  ///< initial tangential plastic jump in the face frame, m
+    std::vector<base::Expression> plastic_jump;      ///< initial tangential plastic jump in the face frame, m
+    std::optional<base::Expression> slip_path;       ///< path length of the initial slip, m; of joints in situ
+    std::vector<base::Expression> initial_traction;  ///< of the contact in the face frame, Pa; empty: as in the rock
+    std::optional<PrescribedSlip> prescribed_slip;
+    std::optional<base::Expression> unbroken;  ///< above 0: bonded at the start, see unbroken.hpp
+    bool stress_intensity = false;             ///< table of StressIntensity
     void describe(base::Section& section);
   };
 
@@ -130,6 +136,13 @@ struct Mechanics : Physics<Mechanics> {
     static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,
                                              const std::vector<assembly::OutputField>& outputs);
   };
+  struct Events {
+    static EventSource source();
+  };
+  struct Tables {
+    static std::string name();
+    static std::unique_ptr<estimate::TableOfStates> table(const Setting& setting, assembly::System& system);
+  };
   struct Solvability {
     static std::vector<std::string> doubts(const Setting& setting, bool oscillates);
   };
@@ -149,21 +162,35 @@ std::map<std::string, bool> changed_rock(const mesh::Mesh& mesh, const Scene& be
 /// Largest Young's modulus, Pa. Collective.
 Real largest_modulus(const Scene& scene, const mesh::Mesh& mesh);
 
+/// Body force and gravity of the scene.
+BodyForce body_force(const Scene& scene, const mesh::Mesh& mesh);
+
 /// Initial stress of the scene: given, lithostatic or in-situ. A region may have its own.
 InitialStress initial_stress(const Scene& scene, const mesh::Mesh& mesh);
 
-/// Initial state of an owned fracture face: traction in its frame, Pa, and shear bound of its joint, Pa.
+/// Initial state of an owned fracture face.
 struct StartOfFace {
-  std::array<Real, 3> traction;
-  Real bound;
+  std::array<Real, 3> traction;  ///< in its frame, Pa; zero without initial stress
+  Real bound;                    ///< shear bound of the joint, Pa
+  bool depends_on_rate;          ///< the bound is that of the initial slip rate
+  Real unloaded_aperture;        ///< a0 of (15), m
+  Real opening;                  ///< normal jump w_0, m; zero without initial stress
+  Real least_opening;            ///< normal jump under unlimited compression without slip, m; lowest number: no bound
+  Real overlap;                  ///< of a joint in situ: laws::overlap_compression(), Pa; otherwise infinite
+  Real smaller_aperture;         ///< of a joint in situ: laws::smaller_aperture(), m; otherwise 0
+  /// Length of the cohesive zone of a rupture, m, 9 pi/32 G*/(N w) (Day et al. 2005) with the decrease w of the
+  /// friction coefficient per slip, G* = G in 3D and G/(1 - nu) in 2D; infinite for friction that does not
+  /// depend on the slip rate, also for slip weakening without radiation damping.
+  Real cohesive_zone;
+  /// Widening by a pressure that varies along the fracture, m/Pa: C = C_j/(1 + C_j E'/(4 h)), with the compliance C_j
+  /// of the joint, the plane-strain modulus E' of the rock at side - and the size h of the face. E'/(4 h) is the
+  /// stiffness of the rock under a pressure cos(x/h).
+  Real compliance;
 };
-/// Initial states of all owned fracture faces; empty without initial stress. Collective.
+/// Initial states of all owned fracture faces. Collective.
 std::vector<StartOfFace> starts_of_faces(const Setting& setting);
 
 /// Gap g0 of (14), [owned fracture face]; null if it is constant on the fracture.
 std::vector<const base::Expression*> varying_gaps(const Scene& scene, const mesh::Mesh& mesh);
-
-/// Initial normal jumps of owned fracture faces, m. Collective.
-std::vector<Real> initial_openings(const Setting& setting);
 
 }  // namespace sprekk::physics

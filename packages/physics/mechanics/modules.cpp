@@ -21,6 +21,12 @@ int max_history(const mesh::Mesh& mesh, const std::vector<laws::JointParameters>
   return base::max_over_ranks(*mesh.comm, here);
 }
 
+/// Returns whether friction of any rank depends on the slip rate. Collective.
+bool depends_on_rate(const mesh::Mesh& mesh, const std::vector<laws::JointParameters>& joints) {
+  const auto depends = [](const auto& joint) { return joint.law.depends_on_rate(); };
+  return base::on_any_rank(*mesh.comm, std::any_of(joints.begin(), joints.end(), depends));
+}
+
 /// Quantities that joints of any rank provide. Collective.
 std::vector<laws::JointQuantity> reported_quantities(const mesh::Mesh& mesh,
                                                      const std::vector<laws::JointParameters>& joints) {
@@ -57,7 +63,9 @@ ElasticPlasticJumpParameters jump_parameters(const mesh::Mesh& mesh, const Mecha
           .augmentation = parameters.augmentation,
           .fluid_pressure = fluid,
           .start = parameters.start,
+          .prescribed_slips = parameters.prescribed_slips,
           .n_history = max_history(mesh, parameters.joints.values),
+          .depends_on_rate = depends_on_rate(mesh, parameters.joints.values),
           .quantities = reported_quantities(mesh, parameters.joints.values),
           .power_to = parameters.power_to};
 }

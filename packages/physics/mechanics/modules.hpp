@@ -18,8 +18,9 @@ struct MechanicsParameters {
   FluidPressure fluid_pressure = {};
   FluidPressure initial_pressure = {};  ///< initial "face pressure" of a fluid with unknown pressure
   Real start = 0;                       ///< time of the initial state, s
-  Real augmentation = 0.3;              ///< see ElasticPlasticJumpParameters
-  std::string power_to = "";            ///< see ElasticPlasticJumpParameters
+  PrescribedSlips prescribed_slips = {};
+  Real augmentation = 0.3;    ///< see ElasticPlasticJumpParameters
+  std::string power_to = "";  ///< see ElasticPlasticJumpParameters
 };
 
 /// Parameters of the module for jumps.

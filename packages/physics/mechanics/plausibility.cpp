@@ -332,7 +332,7 @@ std::string tension_doubt(const Setting& setting) {
 }
 
 /// Warns if horizontal stresses are zero, or their order is reversed at the bottom of the mesh, or if the vertical
-/// stress differs from the weight. Collective.
+/// stress differs from the weight, also if there is no weight. Collective.
 std::string in_situ_doubt(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;
   const auto& stress = scene.bulk.in_situ_stress;
@@ -359,6 +359,11 @@ std::string in_situ_doubt(const Setting& setting) {
                        "exchange them, and change the \"azimuth\" by 90 degrees");
   const auto& gravity = scene.bulk.gravity;
   const auto& density = scene.material_of("bulk").density;
+  if (gravity.empty() && scene.bulk.body_force.empty() && stress->vertical.gradient != 0)
+    return implausible(
+        place, fmt::format("\"Sv gradient\" is {:.4g} Pa/m, and the rock has no weight", stress->vertical.gradient),
+        "without a force against it, the gradient displaces the rock at the start",
+        "give \"gravity\" in \"Bulk\" and \"density\" in the material");
   if (gravity.empty() || !density || !density->is_constant()) return "";
   const Real weight = -(*density)({}, 0) * gravity.back(), gradient = stress->vertical.gradient;
   if (std::abs(gradient - weight) <= 0.02 * std::abs(weight)) return "";
@@ -374,9 +379,11 @@ std::string strength_doubt(const Setting& setting) {
   const auto starts = starts_of_faces(setting);
   std::vector<Real> beyond(mesh.single_fractures.size(), 0), all(beyond);
   for (std::size_t f = 0; f < starts.size(); ++f) {
-    const auto& [t, bound] = starts[f];
+    const auto& t = starts[f].traction;
+    const Real bound = starts[f].bound;
     const auto& face = mesh.fracture_faces[f];
     all[face.single] += face.area;
+    if (starts[f].depends_on_rate) continue;  // slips at another rate
     if (std::hypot(t[1], t[2]) > (1 + 1e-9) * bound || (t[0] > 0 && bound <= 0)) beyond[face.single] += face.area;
   }
   beyond = base::sum_over_ranks(*mesh.comm, beyond);
@@ -401,6 +408,73 @@ std::string strength_doubt(const Setting& setting) {
       "check the initial stress, the pressure and the friction, or treat this step as part of the initial state");
 }
 
+/// Warns about fractures whose cells do not resolve the cohesive zone of a rupture. Collective.
+std::vector<std::string> cohesive_zone_doubts(const Setting& setting) {
+  const auto& mesh = setting.mesh;
+  const std::size_t n = mesh.single_fractures.size();
+  std::vector<Real> ratio(n, huge), edge(n, huge), zone(n, huge);  // of the least resolved face
+  const auto starts = starts_of_faces(setting);
+  const auto edge_of = [&](std::size_t f) { return std::pow(mesh.fracture_faces[f].area, 1.0 / (mesh.dim() - 1)); };
+  for (std::size_t f = 0; f < starts.size(); ++f) {
+    const auto k = mesh.fracture_faces[f].single;
+    ratio[k] = std::min(ratio[k], starts[f].cohesive_zone / edge_of(f));
+  }
+  ratio = base::min_over_ranks(*mesh.comm, ratio);
+  for (std::size_t f = 0; f < starts.size(); ++f) {
+    const auto k = mesh.fracture_faces[f].single;
+    if (starts[f].cohesive_zone / edge_of(f) > ratio[k] || edge_of(f) > edge[k]) continue;
+    edge[k] = edge_of(f);
+    zone[k] = starts[f].cohesive_zone;
+  }
+  edge = base::min_over_ranks(*mesh.comm, edge);
+  zone = base::min_over_ranks(*mesh.comm, zone);
+  std::vector<std::string> doubts;
+  for (std::size_t k = 0; k < n; ++k)
+    if (ratio[k] < 3 * (1 - 1e-6))
+      doubts.push_back(
+          implausible(fmt::format("{}: fracture \"{}\"", setting.scene.origin, mesh.single_fractures[k].name),
+                      fmt::format("a cell has an edge of {:.3g} m, and the cohesive zone of a rupture is {:.3g} m long",
+                                  edge[k], zone[k]),
+                      "cells do not resolve the decrease of friction behind the tip, and slip depends on the cells",
+                      fmt::format("use edges of at most {:.3g} m", zone[k] / 3)));
+  return doubts;
+}
+
+/// Warns about joints in situ whose sides overlap under a higher compression, or whose unloaded aperture is the larger
+/// one of two. Collective.
+std::vector<std::string> in_situ_doubts(const Setting& setting) {
+  const auto& mesh = setting.mesh;
+  const std::size_t n = mesh.single_fractures.size();
+  std::vector<Real> overlap(n, huge), smaller(n, 0), larger(n, 0);
+  const auto starts = starts_of_faces(setting);
+  for (std::size_t f = 0; f < starts.size(); ++f) {
+    const auto k = mesh.fracture_faces[f].single;
+    overlap[k] = std::min(overlap[k], starts[f].overlap);
+    if (starts[f].smaller_aperture <= smaller[k]) continue;
+    smaller[k] = starts[f].smaller_aperture;
+    larger[k] = starts[f].unloaded_aperture;
+  }
+  overlap = base::min_over_ranks(*mesh.comm, overlap);
+  const auto largest = base::max_over_ranks(*mesh.comm, smaller);
+  for (std::size_t k = 0; k < n; ++k)
+    if (smaller[k] < largest[k]) larger[k] = 0;
+  larger = base::max_over_ranks(*mesh.comm, larger);
+  std::vector<std::string> doubts;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto place =
+        fmt::format("{}: fracture \"{}\" in situ: ", setting.scene.origin, mesh.single_fractures[k].name);
+    if (overlap[k] < huge)
+      doubts.push_back(place + fmt::format("a compression above {:.6g} Pa closes it by more than its aperture; the "
+                                           "sides then overlap",
+                                           overlap[k]));
+    if (largest[k] > 0)
+      doubts.push_back(place + fmt::format("two unloaded apertures fit, {:.6g} m and {:.6g} m; the larger one is used. "
+                                           "Give the smaller one as \"joint aperture\" to use it",
+                                           larger[k], largest[k]));
+  }
+  return doubts;
+}
+
 }  // namespace
 
 std::vector<std::string> Mechanics::Warnings::of_input(const Setting& setting, const std::vector<Real>& times) {
@@ -410,7 +484,11 @@ std::vector<std::string> Mechanics::Warnings::of_input(const Setting& setting, c
                                   confining_doubt(setting, some), tension_doubt(setting), in_situ_doubt(setting)};
   const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
   add(joint_doubts(setting));
-  if (!setting.mesh.fracture_names.empty()) all.push_back(strength_doubt(setting));
+  if (!setting.mesh.fracture_names.empty()) {
+    all.push_back(strength_doubt(setting));
+    add(in_situ_doubts(setting));
+    add(cohesive_zone_doubts(setting));
+  }
   std::erase(all, "");
   return all;
 }

@@ -17,13 +17,13 @@ void add(Real factor, const View<Real**>& history, const View<Real*>& rows) {
       KOKKOS_LAMBDA(int i) { rows(i) += factor * history(i / n, i % n); });
 }
 
-/// Computes history := rows + held * history, where rows contain -held * history.
-void take(Real held, const View<Real*>& rows, const View<Real**>& history) {
+/// Computes history := rows + remaining * history, where rows contain -remaining * history.
+void take(Real remaining, const View<Real*>& rows, const View<Real**>& history) {
   const int n = static_cast<int>(history.extent(1));
   Kokkos::parallel_for(
       "release", Kokkos::RangePolicy<Execution>(0, rows.extent(0)), KOKKOS_LAMBDA(int i) {
         auto& value = history(i / n, i % n);
-        value = rows(i) + held * value;
+        value = rows(i) + remaining * value;
       });
 }
 
@@ -52,8 +52,8 @@ class Release final : public assembly::Module, public assembly::Loads, public as
   }
 
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
-    const Real held = held_at(state.t);
-    for (std::size_t k = 0; k < fields_.size() && held > 0; ++k) add(-held, state.history[k], r[fields_[k]]);
+    const Real remaining = remaining_at(state.t);
+    for (std::size_t k = 0; k < fields_.size() && remaining > 0; ++k) add(-remaining, state.history[k], r[fields_[k]]);
   }
   void jacobian(const assembly::State&, fields::BlockMatrix&) const override {}
   bool constant_load() const override { return false; }
@@ -61,12 +61,13 @@ class Release final : public assembly::Module, public assembly::Loads, public as
   /// Saves the unbalanced forces. The residual contains the part of the previous history that is not yet released.
   void take_unbalanced(assembly::State& state, const assembly::Rows& residual) const override {
     if (std::abs(state.t - begin_) > 1e-9 * (end_ - begin_)) return;  // from an earlier stage
-    for (std::size_t k = 0; k < fields_.size(); ++k) take(held_at(state.t), residual[fields_[k]], state.history[k]);
+    for (std::size_t k = 0; k < fields_.size(); ++k)
+      take(remaining_at(state.t), residual[fields_[k]], state.history[k]);
   }
 
  private:
   /// Returns 1 - s.
-  Real held_at(Real t) const { return 1 - std::clamp<Real>((t - begin_) / (end_ - begin_), 0, 1); }
+  Real remaining_at(Real t) const { return 1 - std::clamp<Real>((t - begin_) / (end_ - begin_), 0, 1); }
 
   Real begin_, end_;
   bool tips_ = false;

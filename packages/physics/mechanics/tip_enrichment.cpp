@@ -290,7 +290,7 @@ class TipEnrichment final : public assembly::Module, public assembly::Loads {
   template <class Push, class Host>
   void add_pressure(LocalIndex f, int side, Real t, const Push& push, const Host& load) const {
     const auto& face = mesh_->fracture_faces[f];
-    const Real p = mean_fluid_pressure(fluid_, *mesh_, face, side, t);
+    const Real p = mean_bearing_pressure(fluid_, *mesh_, f, side, t);
     for (int a = 0; a < n; ++a)
       for (int i = 0; i < dim; ++i) add(load, face.cell[side], a, i, p * push(a) * face.frame[0][i]);
   }

@@ -47,12 +47,14 @@ UsedJoint used_joint(const Scene& scene, const mesh::Mesh& mesh, int single) {
               : fmt::format("\"{}\"", scene.fractures.at(mesh.fracture_names[set]).material)};
 }
 
-/// All joints in use, each once.
-std::vector<UsedJoint> used_joints(const Scene& scene, const mesh::Mesh& mesh) {
+/// All joints in use, each once; optionally only those of fractures without "unbroken".
+std::vector<UsedJoint> used_joints(const Scene& scene, const mesh::Mesh& mesh, bool with_growth = true) {
   std::set<const Material*> known;
   std::vector<UsedJoint> all;
   for (int single = 0; single < static_cast<int>(mesh.single_fractures.size()); ++single)
-    if (known.insert(&joint_of(scene, mesh, single)).second) all.push_back(used_joint(scene, mesh, single));
+    if (const auto& set = mesh.fracture_names[mesh.single_fractures[single].set];
+        (with_growth || !scene.fractures.at(set).unbroken) && known.insert(&joint_of(scene, mesh, single)).second)
+      all.push_back(used_joint(scene, mesh, single));
   return all;
 }
 
@@ -81,30 +83,30 @@ using PerPiece = std::vector<int>;
 
 /// [3 piece + component] whether faces have a prescribed displacement in this direction, or tied sides are at a
 /// distance in it. Collective.
-PerPiece held_pieces(const Scene& scene, const mesh::Mesh& mesh) {
-  PerPiece held(3 * mesh.n_pieces, 0);
+PerPiece constrained_pieces(const Scene& scene, const mesh::Mesh& mesh) {
+  PerPiece constrained(3 * mesh.n_pieces, 0);
   for (const auto& [name, condition] : scene.boundary_conditions)
     for (const auto& face : mesh.boundary_faces)
       for (std::size_t i = 0; i < condition.displacement.size(); ++i)
         if (condition.lower_corner.empty() && mesh.boundary_names[face.boundary] == condition.boundary &&
             condition.displacement[i].text() != "free" &&
             (!condition.region || mesh.region_names[mesh.cell_region[face.cell]] == *condition.region))
-          held[3 * mesh.cell_piece[face.cell] + i] = 1;
+          constrained[3 * mesh.cell_piece[face.cell] + i] = 1;
   const int dim = mesh.dim();
   for (std::size_t k = 0; k < mesh.tied_to.size(); ++k)
     for (int i = 0; i < dim; ++i) {
       const Real apart =
           mesh.coordinates[(mesh.n_free_nodes + k) * dim + i] - mesh.coordinates[mesh.tied_to[k] * dim + i];
-      for (int piece = 0; piece < mesh.n_pieces && apart != 0; ++piece) held[3 * piece + i] = 1;
+      for (int piece = 0; piece < mesh.n_pieces && apart != 0; ++piece) constrained[3 * piece + i] = 1;
     }
-  return base::max_over_ranks(*mesh.comm, held);
+  return base::max_over_ranks(*mesh.comm, constrained);
 }
 
 /// [single fracture] whether the rock resists its opening somewhere. It does not if the fracture separates a piece that
 /// touches no third piece and can move along the normal. The loads alone then determine the normal traction.
 /// Collective.
 std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) {
-  const auto held = held_pieces(scene, mesh);
+  const auto constrained = constrained_pieces(scene, mesh);
   PerPiece first(mesh.n_pieces, mesh.n_pieces), last(mesh.n_pieces, -1);  // numbers of the neighbours of a piece
   const auto for_each_face = [&](const auto& use) {
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
@@ -122,7 +124,7 @@ std::vector<int> resisted_fractures(const Scene& scene, const mesh::Mesh& mesh) 
   last = base::max_over_ranks(*mesh.comm, last);
   const auto may_move = [&](int piece, const auto& normal) {
     for (int i = 0; i < 3; ++i)
-      if (held[3 * piece + i] && std::abs(normal[i]) > 1e-6) return false;
+      if (constrained[3 * piece + i] && std::abs(normal[i]) > 1e-6) return false;
     return first[piece] == last[piece];
   };
   std::vector<int> resisted(mesh.single_fractures.size(), 0);
@@ -190,7 +192,7 @@ std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const Real size = mesh::largest_extent(mesh), zero = 0, little = 1e-9;
   const auto rock = bounding_rock(scene);
   if (!rock) return "";
-  for (const auto& [material, called] : used_joints(scene, mesh)) {
+  for (const auto& [material, called] : used_joints(scene, mesh, false)) {
     if (!material.is_uniform()) continue;
     const auto law = material.joint({}).law;
     const laws::Contact<Real> whole{.history = {&zero, 0}};

@@ -137,8 +137,9 @@ class Given final : public GivenPressure, public assembly::Loads {
     largest_ = 0;
     for (const auto* all : {&rock, &fractures})
       for (const Real p : *all) largest_ = std::max(largest_, std::abs(p));
-    const auto in_rock = assembly::to_device(rock, "pressure"),
-               in_fractures = assembly::to_device(fractures, "pressure");
+    auto bearing = fractures;
+    for (std::size_t f = 0; f < bearing.size(); ++f) bearing[f] *= parameters_.of_fillings[f];
+    const auto in_rock = assembly::to_device(rock, "pressure"), in_fractures = assembly::to_device(bearing, "pressure");
     for (const auto& part : parts_) part->set(part->is_of_rock ? in_rock : in_fractures);
   }
 

@@ -11,12 +11,14 @@ namespace sprekk::physics {
 
 struct GivenPressureParameters {
   fields::Properties<Real> biot;  ///< [cell] Biot's coefficient
+  std::vector<Real> of_fillings;  ///< [local fracture face] Biot's coefficient
   Real initial = 0;               ///< pressure of the initial state, Pa
 };
 
-/// Module of a prescribed pressure. It adds -p_K dV_K/du - p_f dW_f/du to the rows of all displacements, with V_K and
-/// of PoroelasticCoupling and W_f of FractureOpening. p is the pressure minus that of the initial state. Outputs of the
-/// present state: "gained pore volume" V_K (cells, m^3; 2D: m^2) and "widening" W_f/|f| (fracture faces, m).
+/// Module of a prescribed pressure. It adds -p_K dV_K/du - alpha_f p_f dW_f/du to the rows of all displacements, with
+/// V_K of PoroelasticCoupling, and alpha_f and W_f of FractureOpening. p is the pressure minus that of the initial
+/// state. Outputs of the present state: "gained pore volume" V_K (cells, m^3; 2D: m^2) and "widening" W_f/|f| (fracture
+/// faces, m).
 class GivenPressure : public assembly::Module {
  public:
   /// Pressure of the initial state, Pa.

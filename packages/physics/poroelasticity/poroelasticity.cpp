@@ -3,15 +3,20 @@
 #include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
+#include "physics/comparison.hpp"
 #include "physics/poroelasticity/fracture_opening.hpp"
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 #include "physics/scene.hpp"
+
+#include <functional>
 
 namespace sprekk::physics {
 
 namespace {
 
 constexpr const char* biot_name = "Biot coefficient";
+
+bool is_one(const base::Expression& value) { return value.is_constant() && value({}, 0) == 1; }
 
 /// Biot's coefficients of cells. Throws an Error on all ranks. Collective.
 fields::Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
@@ -24,9 +29,18 @@ fields::Properties<Real> biot(const Scene& scene, const mesh::Mesh& mesh) {
   return values;
 }
 
+/// Returns find() and throws its errors on all ranks. Collective.
+std::vector<Real> collected(const mesh::Mesh& mesh, const std::function<std::vector<Real>()>& find) {
+  std::vector<Real> values;
+  base::collectively(*mesh.comm, [&] { values = find(); });
+  return values;
+}
+
 /// Creates the module of a pressure prescribed by the host.
 std::unique_ptr<assembly::Module> make_given(const Scene& scene, const mesh::Mesh& mesh) {
-  return make_given_pressure(mesh, {.biot = biot(scene, mesh), .initial = scene.host_fluid->initial_pressure});
+  return make_given_pressure(mesh, {.biot = biot(scene, mesh),
+                                    .of_fillings = collected(mesh, [&] { return filling_biot(scene, mesh); }),
+                                    .initial = scene.host_fluid->initial_pressure});
 }
 
 }  // namespace
@@ -36,6 +50,34 @@ void Poroelasticity::Rock::describe(base::Section& s) {
       s, biot, biot_name, "-", base::between(0, 1),
       "Biot coefficient alpha: with \"Flow\" total stress is the stress of the displacement minus alpha (p - initial "
       "pressure), and the pore volume grows by alpha div u (Biot 1941); typical: 0.35 to 0.8 (material library)");
+}
+
+void Poroelasticity::Joint::describe(base::Section& s) {
+  entry_of_place(s, filling_biot, biot_name, "-", base::between(0, 1),
+                 "Biot coefficient alpha of the filling: a fluid pressure p in the fracture adds -alpha p n to the "
+                 "traction on the rock, and with \"Flow\" a widening b takes up the fluid volume alpha b; 1: open");
+}
+
+/// Reports fillings with a fluid that transports a quantity.
+void Poroelasticity::compare(Comparison& c) {
+  if (!is_in(c.scene())) return;
+  for_each_physics([&]<HasTransport P>(P) {
+    for (const auto& carried : P::Transport::carried(c.scene()))
+      for (const auto& [name, fracture] : c.scene().fractures)
+        if (const auto* joint = c.joint_of(fracture); joint && !is_one(joint->filling_biot))
+          c.fail(fmt::format("Materials > {} > \"{}\"", fracture.material, biot_name),
+                 fmt::format("is {}; must be 1 with transport of the {}", joint->filling_biot.text(), carried.field));
+  });
+}
+
+std::vector<Real> filling_biot(const Scene& scene, const mesh::Mesh& mesh) {
+  std::vector<Real> all;
+  for (const auto& face : mesh.fracture_faces) {
+    const auto& joint = joint_of(scene, mesh, face.single);
+    all.push_back(at_place(scene, joint,
+                           [&] { return value_at(biot_name, joint.filling_biot, base::between(0, 1), face.centre); }));
+  }
+  return all;
 }
 
 transport::Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh) {
@@ -63,7 +105,9 @@ void Poroelasticity::add_modules(const Setting& setting, Modules& modules) {
   if (flows_in_rock(scene))
     modules.push_back(
         make_poroelastic_coupling({.biot = biot(scene, mesh), .stabilisation = stabilisation(scene, mesh)}));
-  if (!mesh.fracture_names.empty()) modules.push_back(make_fracture_opening(mesh));
+  if (!mesh.fracture_names.empty())
+    modules.push_back(make_fracture_opening(
+        mesh, collected(mesh, [&, &scene = scene, &mesh = mesh] { return filling_biot(scene, mesh); })));
 }
 
 std::vector<std::string> Poroelasticity::warnings(const Setting& setting) {

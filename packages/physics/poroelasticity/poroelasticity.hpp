@@ -13,13 +13,24 @@ struct Poroelasticity : Physics<Poroelasticity> {
     void describe(base::Section& section);
   };
 
+  struct Joint : Physics::Joint {
+    base::Expression filling_biot = 1;  ///< Biot's coefficient of the filling; 1: open joint
+    void describe(base::Section& section);
+  };
+
   static bool is_in(const Scene& scene);
   static std::vector<std::string> fixed_entries() { return {"Biot coefficient"}; }
+  static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
 };
 
 /// Stabilisation of the fluid pressure in deforming rock; empty without poroelasticity. Collective.
 transport::Stabilisation stabilisation(const Scene& scene, const mesh::Mesh& mesh);
+
+/// Biot's coefficients alpha_f of fillings, [local fracture face]. The fluid pressure p adds -alpha_f p n to the
+/// traction on the sides, and a widening b increases the volume of the fluid by alpha_f b. Throws an Error if a
+/// coefficient is not between 0 and 1. Local.
+std::vector<Real> filling_biot(const Scene& scene, const mesh::Mesh& mesh);
 
 }  // namespace sprekk::physics

@@ -308,7 +308,7 @@ std::unique_ptr<estimate::MeshError> Tracer::Estimate::mesh_error(const Setting&
   const auto faces = tracer_fillings(setting);
   add_exchange(faces, error.flow.rock.exchange);
   for (const auto& face : faces) error.flow.transmissivity.push_back(face.at_start() * face.diffusion);
-  error.flow.held = dirichlet_conditions(scene.boundary_conditions, {}, names_of(mesh), "face concentration");
+  error.flow.constrained = dirichlet_conditions(scene.boundary_conditions, {}, names_of(mesh), "face concentration");
   if (system.has_rates()) error.storage = capacity_of_cells(setting, mesh.n_owned_cells);
   if (scene.flow) {
     auto fluid = fluid_flux(setting);

@@ -74,11 +74,11 @@ TEST(Constraints, HoldTheGivenComponentsOfAllCopiesOfABoundarysNodes) {
     int copies = 0;  // copies of the node where fracture "c" ends on the north side
     for (int node = 0; node < static_cast<int>(p.global.n_nodes()); ++node) {
       const Real x = p.global.coordinates[node * dim], y = p.global.coordinates[node * dim + 1];
-      const bool held[] = {y == 4, x == 0, false};
+      const bool constrained[] = {y == 4, x == 0, false};
       copies += x == 4 && y == 4;
       for (int c = 0; c < dim; ++c) {
-        EXPECT_EQ(mask(node * dim + c, 0), held[c]) << x << " " << y;
-        EXPECT_EQ(values(node * dim + c, 0), !held[c] ? 0 : c == 0 ? 2 * x + 0.5 : y * y);
+        EXPECT_EQ(mask(node * dim + c, 0), constrained[c]) << x << " " << y;
+        EXPECT_EQ(values(node * dim + c, 0), !constrained[c] ? 0 : c == 0 ? 2 * x + 0.5 : y * y);
       }
     }
     EXPECT_EQ(copies, dim == 2 ? 2 : 6);
@@ -181,8 +181,8 @@ TEST(Constraints, MissLessAtOrderTwo) {
         prescribed_error(*mesh, layout, {{"wall", "displacement", west, {text(formula), std::nullopt}}}, 0);
     const auto values = error.getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LocalIndex i = 0; i < layout.n_owned(); ++i) {
-      const bool held = i % 2 == 0 && mesh->coordinates[i] == 0;
-      EXPECT_NEAR(values(i, 0), held ? missed : 0, 1e-13) << formula;
+      const bool constrained = i % 2 == 0 && mesh->coordinates[i] == 0;
+      EXPECT_NEAR(values(i, 0), constrained ? missed : 0, 1e-13) << formula;
     }
   }
 }
@@ -193,12 +193,12 @@ TEST(Constraints, MayMeetWhereTheyAgree) {
   for (Real t : {0.0, 1.0, -2.5}) EXPECT_EQ(p.error_of(constraints, t), "");
   constraints.evaluate(2);
   const auto [mask, values] = p.gather(constraints);
-  Real n_held = 0;
-  for (Real m : mask.values) n_held += m;
-  EXPECT_EQ(n_held, 8 + 5 - 1);  // 7 nodes and a copy on the north side, 5 on the east side, one corner
+  Real n_constrained = 0;
+  for (Real m : mask.values) n_constrained += m;
+  EXPECT_EQ(n_constrained, 8 + 5 - 1);  // 7 nodes and a copy on the north side, 5 on the east side, one corner
   Real n_entries = static_cast<Real>(constraints.entries().size()), all = 0;
   Teuchos::reduceAll(*p.mesh->comm, Teuchos::REDUCE_SUM, 1, &n_entries, &all);
-  EXPECT_EQ(all, n_held);
+  EXPECT_EQ(all, n_constrained);
 }
 
 TEST(Constraints, ConflictsNameBothConditionsAndThePlace) {

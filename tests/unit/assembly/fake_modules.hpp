@@ -213,8 +213,9 @@ class Hardening final : public assembly::Module {
 };
 
 /// Returns a constant condition on "displacement"; components without a value are free.
-inline assembly::DirichletCondition hold(const mesh::Mesh& mesh, const std::string& name, const std::string& boundary,
-                                         std::vector<std::optional<base::Expression>> values) {
+inline assembly::DirichletCondition constrain(const mesh::Mesh& mesh, const std::string& name,
+                                              const std::string& boundary,
+                                              std::vector<std::optional<base::Expression>> values) {
   const auto& names = mesh.boundary_names;
   values.resize(mesh.dim());
   return {name, "displacement", static_cast<int>(std::find(names.begin(), names.end(), boundary) - names.begin()),

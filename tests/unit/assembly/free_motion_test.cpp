@@ -20,13 +20,14 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-/// Returns a condition that constrains the components in `held`, e.g. "xz".
-DirichletCondition hold(const GlobalMesh& mesh, const std::string& boundary, const std::string& held, int region = -1) {
+/// Returns a condition that constrains the components in `constrained`, e.g. "xz".
+DirichletCondition constrain(const GlobalMesh& mesh, const std::string& boundary, const std::string& constrained,
+                             int region = -1) {
   const auto found = std::find(mesh.boundary_names.begin(), mesh.boundary_names.end(), boundary);
   DirichletCondition condition{boundary, "displacement", static_cast<int>(found - mesh.boundary_names.begin()), {}};
   for (int i = 0; i < mesh.dim(); ++i)
-    condition.values.push_back(held.find("xyz"[i]) == held.npos ? std::nullopt
-                                                                : std::make_optional(base::Expression(0.0)));
+    condition.values.push_back(
+        constrained.find("xyz"[i]) == constrained.npos ? std::nullopt : std::make_optional(base::Expression(0.0)));
   condition.region = region;
   return condition;
 }
@@ -81,7 +82,7 @@ void expect_compatible(const GlobalMesh& mesh, const std::vector<DirichletCondit
   }
 }
 
-TEST(FreeMotion, HeldOnOneSideIsHeld) {
+TEST(FreeMotion, ConstrainedOnOneSideIsConstrained) {
   for (const auto& cell : all_cells)
     for (int order : {1, 2}) {
       auto box = crossed(cell);
@@ -89,13 +90,14 @@ TEST(FreeMotion, HeldOnOneSideIsHeld) {
       for (Real degrees : {0.0, 25.0}) {
         box.rotation = degrees;
         const auto mesh = make_box(box);
-        EXPECT_THAT(texts(mesh, {hold(mesh, "south", "xyz")}), ElementsAre()) << cell;
-        EXPECT_THAT(texts(mesh, {hold(mesh, "south", "xyz"), hold(mesh, "north", "y")}), ElementsAre()) << cell;
+        EXPECT_THAT(texts(mesh, {constrain(mesh, "south", "xyz")}), ElementsAre()) << cell;
+        EXPECT_THAT(texts(mesh, {constrain(mesh, "south", "xyz"), constrain(mesh, "north", "y")}), ElementsAre())
+            << cell;
       }
     }
 }
 
-TEST(FreeMotion, NothingHeld) {
+TEST(FreeMotion, NothingConstrained) {
   for (const auto& cell : all_cells) {
     const auto mesh = make_box(crossed(cell));  // 6 x 4 [x 2]
     if (dim_of(cell) == 2)
@@ -113,17 +115,17 @@ TEST(FreeMotion, NothingHeld) {
 TEST(FreeMotion, Rollers) {
   for (const auto& cell : all_cells) {
     const auto mesh = make_box(crossed(cell));
-    std::vector<DirichletCondition> rollers{hold(mesh, "west", "x")};
+    std::vector<DirichletCondition> rollers{constrain(mesh, "west", "x")};
     if (dim_of(cell) == 2) {
       EXPECT_THAT(texts(mesh, rollers), ElementsAre("can move along (0, 1)"));
-      rollers.push_back(hold(mesh, "south", "y"));
+      rollers.push_back(constrain(mesh, "south", "y"));
     } else {
-      rollers.push_back(hold(mesh, "bottom", "z"));
+      rollers.push_back(constrain(mesh, "bottom", "z"));
       EXPECT_THAT(texts(mesh, rollers), ElementsAre("can move along (0, 1, 0)"));
       EXPECT_THAT(texts(mesh, {rollers[1]}),
                   UnorderedElementsAre("can move along (1, 0, 0)", "can move along (0, 1, 0)",
                                        "can rotate about the axis (0, 0, 1) through (3, 2, 1)"));
-      rollers.push_back(hold(mesh, "south", "y"));
+      rollers.push_back(constrain(mesh, "south", "y"));
     }
     EXPECT_THAT(texts(mesh, rollers), ElementsAre()) << cell;
   }
@@ -134,9 +136,9 @@ TEST(FreeMotion, ObliqueRollers) {
   auto box = unit_steps("quadrilateral", {2, 2});
   box.rotation = 30;
   const auto mesh = make_box(box);
-  const std::vector<DirichletCondition> rollers{hold(mesh, "south", "y")};
+  const std::vector<DirichletCondition> rollers{constrain(mesh, "south", "y")};
   EXPECT_THAT(texts(mesh, rollers), ElementsAre("can move along (1, 0)"));
-  const std::vector<DirichletCondition> two{hold(mesh, "south", "y"), hold(mesh, "west", "y")};
+  const std::vector<DirichletCondition> two{constrain(mesh, "south", "y"), constrain(mesh, "west", "y")};
   EXPECT_THAT(texts(mesh, two), ElementsAre("can move along (1, 0)"));
 }
 
@@ -150,12 +152,12 @@ TEST(FreeMotion, Hinges) {
   hinge.region_names = {"rock"};
   hinge.boundary_names = {"held"};
   hinge.boundary_faces = {{0, 0, 0}};
-  EXPECT_THAT(texts(hinge, {hold(hinge, "held", "xyz")}),
+  EXPECT_THAT(texts(hinge, {constrain(hinge, "held", "xyz")}),
               ElementsAre("can rotate about the axis (0, 0, 1) through (0, 0, 1)"));
-  EXPECT_EQ(free_motions(hinge, {hold(hinge, "held", "xyz")}).front().body, 1);
+  EXPECT_EQ(free_motions(hinge, {constrain(hinge, "held", "xyz")}).front().body, 1);
   hinge.coordinates.insert(hinge.coordinates.end(), {0, 0, 3});
   hinge.cells = {0, 2, 3, 1, 6, 4, 5, 1};
-  EXPECT_THAT(texts(hinge, {hold(hinge, "held", "xyz")}),
+  EXPECT_THAT(texts(hinge, {constrain(hinge, "held", "xyz")}),
               UnorderedElementsAre("can rotate about the axis (1, 0, 0) through (-0.5, 0, 2)",
                                    "can rotate about the axis (0, 1, 0) through (0, -0.5, 2)",
                                    "can rotate about the axis (0, 0, 1) through (0, 0, 1.5)"));
@@ -172,7 +174,7 @@ TEST(FreeMotion, RotationAboutAPoint) {
   mesh.region_names = {"rock"};
   mesh.boundary_names = {"bottom"};
   mesh.boundary_faces = {{0, 0, 0}};
-  const std::vector<DirichletCondition> in_x{hold(mesh, "bottom", "x")};
+  const std::vector<DirichletCondition> in_x{constrain(mesh, "bottom", "x")};
   EXPECT_THAT(texts(mesh, in_x), UnorderedElementsAre("can move along (0, 1)", "can rotate about (0.5, 0)"));
   expect_compatible(mesh, in_x);
 }
@@ -181,18 +183,18 @@ TEST(FreeMotion, DisconnectedBodies) {
   for (const auto& cell : all_cells) {
     const auto one = make_box(crossed(cell));
     const auto mesh = both(one, one, 10);
-    EXPECT_THAT(texts(mesh, {hold(mesh, "south", "xyz")}), ElementsAre()) << cell;
-    const auto first_only = hold(mesh, "south", "xyz", 0);
+    EXPECT_THAT(texts(mesh, {constrain(mesh, "south", "xyz")}), ElementsAre()) << cell;
+    const auto first_only = constrain(mesh, "south", "xyz", 0);
     const std::size_t n_free = dim_of(cell) == 2 ? 3 : 6;
     EXPECT_EQ(free_motions(mesh, {first_only}).size(), n_free) << cell;
     EXPECT_EQ(free_motions(mesh, {}).size(), 2 * n_free) << cell;
-    const auto message = unconstrained(mesh, {first_only, hold(mesh, "west", "x")});
+    const auto message = unconstrained(mesh, {first_only, constrain(mesh, "west", "x")});
     EXPECT_THAT(
         message,
         AllOf(HasSubstr("\"second\""), HasSubstr(fmt::format("{} cells of {}", one.n_cells(), 2 * one.n_cells())),
               HasSubstr(dim_of(cell) == 2 ? "it can move along (0, 1)" : "it can move along (0, 1, 0)"),
               HasSubstr("around (10.")));
-    EXPECT_EQ(unconstrained(mesh, {first_only, hold(mesh, "west", "xyz")}), "");
+    EXPECT_EQ(unconstrained(mesh, {first_only, constrain(mesh, "west", "xyz")}), "");
     EXPECT_THAT(unconstrained(mesh, {}), HasSubstr("and 1 more bodies"));
   }
 }
@@ -204,7 +206,7 @@ TEST(FreeMotion, ContactHolds) {
     box.fractures["f"] =
         dim_of(cell) == 2 ? mesh::testing::fracture({0, 1}, {2, 1}) : mesh::testing::fracture({0, 1, 0}, {2, 1, 1});
     const auto mesh = make_box(box);
-    EXPECT_EQ(unconstrained(mesh, {hold(mesh, "south", "xyz")}), "") << cell;
+    EXPECT_EQ(unconstrained(mesh, {constrain(mesh, "south", "xyz")}), "") << cell;
   }
 }
 
@@ -214,23 +216,23 @@ TEST(FreeMotion, PeriodicSides) {
   box.periodic = {"x"};
   auto mesh = make_box(box);
   EXPECT_THAT(texts(mesh, {}), UnorderedElementsAre("can move along (1, 0)", "can move along (0, 1)"));
-  EXPECT_THAT(texts(mesh, {hold(mesh, "south", "y")}), ElementsAre("can move along (1, 0)"));
-  EXPECT_THAT(texts(mesh, {hold(mesh, "south", "xy")}), ElementsAre());
+  EXPECT_THAT(texts(mesh, {constrain(mesh, "south", "y")}), ElementsAre("can move along (1, 0)"));
+  EXPECT_THAT(texts(mesh, {constrain(mesh, "south", "xy")}), ElementsAre());
   for (const std::string cell : {"tetrahedron", "hexahedron"}) {
     auto cube = unit_steps(cell, {2, 2, 2});
     cube.periodic = {"y"};
     mesh = make_box(cube);
-    EXPECT_THAT(texts(mesh, {hold(mesh, "bottom", "z")}),
+    EXPECT_THAT(texts(mesh, {constrain(mesh, "bottom", "z")}),
                 UnorderedElementsAre("can move along (1, 0, 0)", "can move along (0, 1, 0)"));
-    EXPECT_THAT(texts(mesh, {hold(mesh, "west", "xy")}), UnorderedElementsAre("can move along (0, 0, 1)"));
-    EXPECT_THAT(texts(mesh, {hold(mesh, "bottom", "y")}),
+    EXPECT_THAT(texts(mesh, {constrain(mesh, "west", "xy")}), UnorderedElementsAre("can move along (0, 0, 1)"));
+    EXPECT_THAT(texts(mesh, {constrain(mesh, "bottom", "y")}),
                 UnorderedElementsAre("can move along (1, 0, 0)", "can move along (0, 0, 1)",
                                      "can rotate about the axis (0, 1, 0) through (1, 1, 1)"));
     cube.periodic = {"x", "y"};
     mesh = make_box(cube);
-    EXPECT_THAT(texts(mesh, {hold(mesh, "top", "z")}),
+    EXPECT_THAT(texts(mesh, {constrain(mesh, "top", "z")}),
                 UnorderedElementsAre("can move along (1, 0, 0)", "can move along (0, 1, 0)"));
-    expect_compatible(mesh, {hold(mesh, "top", "z")});
+    expect_compatible(mesh, {constrain(mesh, "top", "z")});
   }
 }
 
@@ -244,16 +246,16 @@ TEST(FreeMotion, DoesNotDependOnUnitsOrOrigin) {
         box.upper_corner[i] = shift * size + size * (i == 2 ? 0.1 : 1);
       }
       auto mesh = make_box(box);
-      EXPECT_EQ(free_motions(mesh, {hold(mesh, "bottom", "z")}).size(), 3u);
-      EXPECT_EQ(free_motions(mesh, {hold(mesh, "bottom", "xz")}).size(), 1u);
-      EXPECT_EQ(free_motions(mesh, {hold(mesh, "bottom", "xyz")}).size(), 0u);
+      EXPECT_EQ(free_motions(mesh, {constrain(mesh, "bottom", "z")}).size(), 3u);
+      EXPECT_EQ(free_motions(mesh, {constrain(mesh, "bottom", "xz")}).size(), 1u);
+      EXPECT_EQ(free_motions(mesh, {constrain(mesh, "bottom", "xyz")}).size(), 0u);
       auto& faces = mesh.boundary_faces;
       const auto bottom =
           std::find(mesh.boundary_names.begin(), mesh.boundary_names.end(), "bottom") - mesh.boundary_names.begin();
       const auto one =
           *std::find_if(faces.begin(), faces.end(), [&](const auto& face) { return face.boundary == bottom; });
       faces = {one};  // one fortieth of the size
-      EXPECT_EQ(free_motions(mesh, {hold(mesh, "bottom", "xyz")}).size(), 0u);
+      EXPECT_EQ(free_motions(mesh, {constrain(mesh, "bottom", "xyz")}).size(), 0u);
     }
 }
 

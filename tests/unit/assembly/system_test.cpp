@@ -13,8 +13,8 @@ namespace {
 
 using fields::BlockVector;
 using fields::create_like;
+using test::constrain;
 using test::Dense;
-using test::hold;
 using test::make_system;
 
 constexpr Shape shape = Shape::triangle;
@@ -173,17 +173,17 @@ TEST(System, UnknownFieldsAreNamed) {
 TEST(System, ConstrainedRowsAreTheDistanceToTheValue) {
   const auto mesh = make_mesh();
   auto system =
-      make_system(mesh, all_modules(0.75), {hold(*mesh, "wall", "west", {base::Expression(0.25), std::nullopt})});
+      make_system(mesh, all_modules(0.75), {constrain(*mesh, "wall", "west", {base::Expression(0.25), std::nullopt})});
   system->set_time(1, 1);
   auto x = system->initial(), r = create_like(x), raw = create_like(x);
   test::randomize(x, 1, 5);
   system->residual(x, r);
   system->raw_residual(x, raw);
-  const auto held = system->constrained(0);
-  ASSERT_EQ(static_cast<LocalIndex>(held.extent(0)), mesh->n_owned_nodes * 2);
+  const auto constrained = system->constrained(0);
+  ASSERT_EQ(static_cast<LocalIndex>(constrained.extent(0)), mesh->n_owned_nodes * 2);
   for (LocalIndex i = 0; i < mesh->n_owned_nodes * 2; ++i) {
-    EXPECT_EQ(held(i), i % 2 == 0 && mesh->coordinates[i] == 0);
-    EXPECT_EQ(r[0]->getData()[i], held(i) ? x[0]->getData()[i] - 0.25 : raw[0]->getData()[i]);
+    EXPECT_EQ(constrained(i), i % 2 == 0 && mesh->coordinates[i] == 0);
+    EXPECT_EQ(r[0]->getData()[i], constrained(i) ? x[0]->getData()[i] - 0.25 : raw[0]->getData()[i]);
   }
   auto difference = rcp(new fields::Vector(*r[1], Teuchos::Copy));
   difference->update(-1, *raw[1], 1);
@@ -194,7 +194,7 @@ TEST(System, ScalesFollowTheLoadsAndNeverShrink) {
   const auto mesh = make_mesh();
   base::Expression pulled("-0.5*t");
   pulled.compile();
-  auto system = make_system(mesh, all_modules(3, 1), {hold(*mesh, "wall", "west", {pulled, base::Expression(0)})});
+  auto system = make_system(mesh, all_modules(3, 1), {constrain(*mesh, "wall", "west", {pulled, base::Expression(0)})});
   system->set_time(1, 1);
   EXPECT_DOUBLE_EQ(system->scales().at("stress"), 25);  // E u/L exceeds the load 3
   EXPECT_DOUBLE_EQ(system->scales().at("displacement"), 0.5);
@@ -212,8 +212,8 @@ TEST(System, ScalesFollowTheLoadsAndNeverShrink) {
 
 TEST(System, MeasuresAreRelativeToTheScales) {
   const auto mesh = make_mesh();
-  auto system =
-      make_system(mesh, all_modules(3), {hold(*mesh, "wall", "west", {base::Expression(0.5), base::Expression(0.5)})});
+  auto system = make_system(mesh, all_modules(3),
+                            {constrain(*mesh, "wall", "west", {base::Expression(0.5), base::Expression(0.5)})});
   system->set_time(1, 1);
   auto x = system->initial(), r = create_like(x);
   x[1]->putScalar(-50);
@@ -236,8 +236,8 @@ TEST(System, MeasuresAreRelativeToTheScales) {
 
 TEST(System, MeritIsAnEnergyOfTheFreeRows) {
   const auto mesh = make_mesh();
-  auto system =
-      make_system(mesh, only(springs()), {hold(*mesh, "wall", "west", {base::Expression(0), base::Expression(0)})});
+  auto system = make_system(mesh, only(springs()),
+                            {constrain(*mesh, "wall", "west", {base::Expression(0), base::Expression(0)})});
   system->set_time(1, 1);
   auto x = system->initial(), r = create_like(x);
   test::randomize(r, 1, 9);
@@ -246,18 +246,18 @@ TEST(System, MeritIsAnEnergyOfTheFreeRows) {
   fields::Vector mask(r[0]->getMap());
   for (LocalIndex i = 0; i < static_cast<LocalIndex>(mask.getLocalLength()); ++i)
     mask.replaceLocalValue(i, system->constrained(0)(i));
-  const Dense held = test::gather(mask);
+  const Dense constrained = test::gather(mask);
   Real energy = 0;
   for (int i = 0; i < A.n_rows; ++i)
-    if (held(i, 0) == 0) energy += row(i, 0) * row(i, 0) / A(i, i);
+    if (constrained(i, 0) == 0) energy += row(i, 0) * row(i, 0) / A(i, i);
   EXPECT_NEAR(system->merit(x, r), energy, 1e-12 * energy);
 }
 
 TEST(System, ReactionsBalanceTheLoads) {
   const auto mesh = make_mesh();
   auto system = make_system(mesh, only(springs(0.75)),
-                            {hold(*mesh, "wall", "west", {base::Expression(0), base::Expression(0)}),
-                             hold(*mesh, "floor", "south", {std::nullopt, base::Expression(0)})});
+                            {constrain(*mesh, "wall", "west", {base::Expression(0), base::Expression(0)}),
+                             constrain(*mesh, "floor", "south", {std::nullopt, base::Expression(0)})});
   system->set_time(1, 1);
   auto x = system->initial(), r = create_like(x);
   system->residual(x, r);
@@ -266,9 +266,9 @@ TEST(System, ReactionsBalanceTheLoads) {
   fields::Vector mask(x[0]->getMap());
   for (LocalIndex i = 0; i < static_cast<LocalIndex>(mask.getLocalLength()); ++i)
     mask.replaceLocalValue(i, system->constrained(0)(i));
-  const Dense held = test::gather(mask);
+  const Dense constrained = test::gather(mask);
   for (int i = 0; i < A.n_rows; ++i)
-    for (int j = 0; held(i, 0) && j < A.n_columns; ++j) A(i, j) = i == j;
+    for (int j = 0; constrained(i, 0) && j < A.n_columns; ++j) A(i, j) = i == j;
   const Dense step = test::solve(A, test::gather(*r[0]));
   for (LocalIndex i = 0; i < static_cast<LocalIndex>(x[0]->getLocalLength()); ++i)
     x[0]->replaceLocalValue(i, -step(static_cast<int>(x[0]->getMap()->getGlobalElement(i)), 0));
@@ -315,9 +315,9 @@ TEST(System, OutputsCoverGhostNodes) {
 
 TEST(System, ConflictingConditionsFailOnEveryRank) {
   const auto mesh = make_mesh();
-  auto system = make_system(
-      mesh, only(springs()),
-      {hold(*mesh, "wall", "west", {base::Expression(1)}), hold(*mesh, "lid", "north", {base::Expression(2)})});
+  auto system = make_system(mesh, only(springs()),
+                            {constrain(*mesh, "wall", "west", {base::Expression(1)}),
+                             constrain(*mesh, "lid", "north", {base::Expression(2)})});
   EXPECT_THAT(mesh::testing::error_of([&] { system->set_time(1, 1); }), ::testing::HasSubstr("\"lid\""));
 }
 

@@ -1,5 +1,6 @@
 #include "base/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "array.hpp"
@@ -115,6 +116,17 @@ std::string errors_with(const std::vector<std::string>& path, const std::string&
   for (const auto& part : path) section = &section->sublist(part);
   section->set(name, value);
   return errors_of(list);
+}
+
+TEST(Parameters, long_lists_of_errors_end_with_a_count) {
+  const auto message = [](std::size_t n) {
+    return message_of([&] { throw_errors(std::vector<std::string>(n, "x")); });
+  };
+  EXPECT_NO_THROW(throw_errors({}));
+  EXPECT_EQ(message(2), "x\nx");
+  const auto text = message(500);
+  EXPECT_EQ(std::count(text.begin(), text.end(), 'x'), 20);
+  EXPECT_NE(text.find("\nand 480 more errors"), text.npos);
 }
 
 TEST(Parameters, are_read_into_their_targets) {
@@ -358,6 +370,51 @@ TEST(Parameters, the_echo_is_complete_and_reads_back) {
   auto reread = read<Scene>(effective(fresh, "Sprekk"), "f", "Sprekk");
   EXPECT_EQ(to_xml(effective(reread, "Sprekk")), to_xml(effective(fresh, "Sprekk")));
   EXPECT_FALSE(reread.output);
+}
+
+struct Checked {
+  struct Part {
+    Real width = 1;
+    int n_calls = 0;  ///< no entry
+    void describe(Section& s) { s.entry(width, "width", "m", positive(), ""); }
+  };
+  std::map<std::string, Part> parts;
+  std::optional<Part> other;
+  Expression load = 0;
+  std::string kind = "a";
+  Tables tables;
+  Expression::Named named;
+  void describe(Section& s) {
+    s.named_expressions(named, "Expressions", "");
+    s.expressions_call(tables, named);
+    s.named_sections(parts, "parts", "");
+    s.section(other, "other", "");
+    s.entry(load, "load", "Pa", "");
+    s.choice(kind, "kind", {"a", "b"}, "");
+  }
+};
+
+TEST(Parameters, a_struct_is_checked_in_place) {
+  Checked given;
+  given.parts["one"].n_calls = 7;
+  given.named["twice"] = Expression("2*t");
+  given.load = Expression("twice + 1");
+  const auto good = checked(given, "f", "R");
+  EXPECT_TRUE(good.report.errors.empty());
+  EXPECT_EQ(good.value.parts.at("one").n_calls, 7);  // a member that is no entry
+  EXPECT_EQ(good.value.load({}, 3), 7);              // compiled
+  given.parts["two"].width = -1;
+  given.other.emplace().width = 0;
+  given.load = Expression("thrice + 1");
+  given.kind = "c";
+  const auto bad = checked(given, "f", "R");
+  ASSERT_EQ(bad.report.errors.size(), 4u);
+  EXPECT_CONTAINS(bad.report.errors[0], "f: R > parts > two > \"width\": is -1, must be positive");
+  EXPECT_CONTAINS(bad.report.errors[1], "f: R > other > \"width\": is 0, must be positive");
+  EXPECT_CONTAINS(bad.report.errors[2], "f: R > \"load\": in \"thrice + 1\": unknown name");
+  EXPECT_CONTAINS(bad.report.errors[3], "f: R > \"kind\": is \"c\", must be one of \"a\"");
+  EXPECT_FALSE(bad.report.is_sound("R > parts > two"));
+  EXPECT_TRUE(bad.report.is_sound("R > parts > one"));
 }
 
 TEST(Parameters, the_reference_names_everything) {

@@ -16,6 +16,7 @@ TEST(Text, long_lists_end_with_a_count) {
   const auto text = quoted_list(names);
   EXPECT_EQ(text.size(), 40 * 5 - 2 + std::string(" and 960 more").size());
   EXPECT_NE(text.find("\"n\" and 960 more"), text.npos);
+  EXPECT_LT(quoted_list(Strings(1000, std::string(150, 'n'))).size(), 1700u);
 }
 
 TEST(Text, numbers_are_read_whole_or_not_at_all) {

@@ -67,7 +67,7 @@ TEST(Json, IsWrittenInPlaceWhereThereIsRoom) {
   EXPECT_EQ(nlohmann::json::parse(content(path)), nlohmann::json({{"status", "failed"}, {"steps", {1, 2, 3}}}));
 }
 
-TEST(DirectoryLock, IsHeldByOne) {
+TEST(DirectoryLock, IsConstrainedByOne) {
   const auto comm = Tpetra::getDefaultComm();
   const Scratch scratch(*comm);
   const std::string path = scratch / "made/below";

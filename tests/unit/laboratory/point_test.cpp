@@ -87,6 +87,25 @@ TEST(Point, OfSeveralSpecimensHasOneCurveEach) {
   EXPECT_THAT(message_of([&] { drive_point(scene); }), HasSubstr("point.xml: has 2 specimens, not one point"));
 }
 
+TEST(Point, OfAJointInSituRequiresAnInitialTraction) {
+  const Entries in_situ = {"Materials.joint.reference state=in situ", "Materials.joint.initial aperture=0.5"};
+  EXPECT_THAT(
+      message_of([&] { point(in_situ); }),
+      HasSubstr("point.xml: Sprekk > Point > \"initial traction\": missing; it is required with the \"reference "
+                "state\" in situ of the joint"));
+  auto loaded = in_situ;
+  loaded.insert(loaded.end(), {"Point.initial traction={-2, 0}", "Materials.joint.normal stiffness=8.0"});
+  const auto curves = drive_points(point(loaded));
+  EXPECT_NEAR(curves[0].initial.aperture, 0.5, 1e-15);
+  loaded.emplace_back("Point.path={-6, 0}");
+  EXPECT_NEAR(drive_point(point(loaded)).back().aperture, 0, 1e-12);
+  loaded.emplace_back("Point.initial traction={-2, 3}");
+  EXPECT_THAT(
+      message_of([&] { drive_point(point(loaded)); }),
+      HasSubstr("point.xml: Sprekk > Point: the initial shear traction is 3 Pa under the normal traction -2 Pa; "
+                "it must be at most the strength of the joint, 1 Pa"));
+}
+
 TEST(Point, TablesHaveOneLineForEachState) {
   const PointState initial = {.jump = {0, 0}, .elastic = {0, 0}, .plastic = {0, 0}, .traction = {0, 0}};
   PointState state = initial;
@@ -95,11 +114,12 @@ TEST(Point, TablesHaveOneLineForEachState) {
   state.jump = {1, -2};
   state.traction = {-4, 0.25};
   state.strength = 8;
+  state.aperture = 16;
   std::ostringstream plain, named;
   write_csv(plain, {{.initial = initial, .states = {state}}});
   EXPECT_EQ(plain.str(),
             "t,state,jump_n,jump_t,elastic_jump_n,elastic_jump_t,plastic_jump_n,plastic_jump_t,traction_n,traction_t,"
-            "strength\n0,0,0,0,0,0,0,0,0,0,0\n0.5,2,1,-2,0,0,0,0,-4,0.25,8\n");
+            "strength,aperture\n0,0,0,0,0,0,0,0,0,0,0,0\n0.5,2,1,-2,0,0,0,0,-4,0.25,8,16\n");
   write_csv(named, {{.initial = initial, .specimen = "a \"b\""}});
   EXPECT_THAT(named.str(), HasSubstr("specimen,t,state,"));
   EXPECT_THAT(named.str(), HasSubstr("\n\"a \"\"b\"\"\",0,0,"));

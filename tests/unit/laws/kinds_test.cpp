@@ -10,6 +10,7 @@ namespace {
 
 /// Returns an allowed value of the entry, with a magnitude typical of its unit.
 Real typical(const Entry& entry) {
+  if (entry.name == "largest past compression") return 0;  // the tests begin with joints without a past
   if (entry.otherwise && std::isfinite(*entry.otherwise) && *entry.otherwise != 0) return *entry.otherwise;
   const std::pair<const char*, Real> usual[] = {
       {"Pa", 4e7}, {"degree", 25}, {"m", 2e-4}, {"Pa/m", 3e10}, {"J/m^2", 3e3}};

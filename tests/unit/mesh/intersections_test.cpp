@@ -3,12 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "mesh/distribute.hpp"
 #include "mesh/mesh_info.hpp"
+#include "mesh/number_facets.hpp"
+#include "mesh/partition.hpp"
 #include "mesh/refine.hpp"
 #include "meshes.hpp"
+#include "parts.hpp"
 
 namespace sprekk::mesh::testing {
 namespace {
@@ -68,6 +73,45 @@ TEST(Intersections, AreThoseOfTheMeshHoweverItIsDistributed) {
         }
       }
       EXPECT_EQ(found.empty(), comm->getRank() > 0);
+    }
+}
+
+/// Three fractures through the centre of a box, with unit edges. An owned edge has all edges at its ends: 6
+/// intersections at the centre, 2 along a line, and at its end on the boundary the 4 borders that end there.
+TEST(Intersections, JunctionsAreCompleteAtOwnedEdges) {
+  const auto comm = Tpetra::getDefaultComm();
+  for (const std::string cell : {"tetrahedron", "hexahedron"})
+    for (const int refinements : {0, 1}) {
+      auto box = unit_steps(cell, {4, 4, 4});
+      box.fractures["a"] = fracture({0, 2, 0}, {4, 2, 4});
+      box.fractures["b"] = fracture({2, 0, 0}, {2, 4, 4});
+      box.fractures["c"] = fracture({0, 0, 2}, {4, 4, 2});
+      auto global = make_box(box);
+      if (refinements > 0) turn_for_refinement(global);
+      auto parts = other_parts(global, comm->getSize());
+      parts.push_back(partition(global, comm->getSize()));
+      for (const auto& part : parts) {
+        auto mesh = distribute(global, part, comm);
+        if (refinements > 0) mesh = refined(*mesh, refinements);
+        mesh = with_facets(mesh);
+        std::map<std::pair<int, int>, int> ends;  // (intersections, borders) at both ends of owned intersections
+        for (const auto& edges : junctions(*mesh)) {
+          const auto lines = static_cast<int>(
+              std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.is_intersection(); }));
+          for (const auto& edge : edges) {
+            if (edge.facet >= mesh->facets->n_owned || !edge.is_intersection()) continue;
+            ++ends[{lines, static_cast<int>(edges.size()) - lines}];
+            EXPECT_NEAR(norm(edge.to_point), refinements > 0 ? 0.25 : 0.5, 1e-12);
+            EXPECT_EQ(edge.fractures.size(), 4u);
+          }
+        }
+        for (const auto& [numbers, n] : ends)
+          EXPECT_TRUE(numbers == std::pair(6, 0) || numbers == std::pair(2, 0) || numbers == std::pair(1, 4))
+              << cell << ": " << numbers.first << ", " << numbers.second;
+        std::vector<int> all = sum_over_ranks(*comm, {ends[{6, 0}], ends[{2, 0}], ends[{1, 4}]});
+        const int n = 6 * (refinements > 0 ? 4 : 2);  // edges of half a line
+        EXPECT_EQ(all, (std::vector<int>{6, 2 * n - 12, 6})) << cell;
+      }
     }
 }
 

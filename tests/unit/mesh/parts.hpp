@@ -59,13 +59,13 @@ inline void expect_as_documented(const GlobalMesh& global, const std::vector<int
     }
     return points;
   };
-  for (const auto& f : global.fracture_faces)  // cells at faces that share an end with an owned face
+  for (const auto& f : global.fracture_faces)  // cells at faces that share a point with an owned face
     for (const auto& other : global.fracture_faces) {
       if (part[f.cell[minus]] != rank) continue;
       int shared = 0;
       const auto points = points_of(f);
       for (const auto& x : points_of(other)) shared += points.count(x);
-      if (shared >= dim - 1) cells.insert(other.cell[minus]);
+      if (shared > 0) cells.insert(other.cell[minus]);
     }
   for (auto c : cells)
     for (auto n : nodes_of(c)) nodes.insert(n);

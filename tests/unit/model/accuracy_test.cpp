@@ -16,11 +16,11 @@ Quantity quantity(const std::string& what) {
 TEST(Accuracy, TheLargerToleranceApplies) {
   auto q = quantity("slip");
   q.relative = 0.25;
-  EXPECT_EQ(q.asked(-8), 2);
-  EXPECT_EQ(q.asked(0), 0);
+  EXPECT_EQ(q.requested(-8), 2);
+  EXPECT_EQ(q.requested(0), 0);
   q.absolute = 3;
-  EXPECT_EQ(q.asked(-8), 3);
-  EXPECT_EQ(q.asked(16), 4);
+  EXPECT_EQ(q.requested(-8), 3);
+  EXPECT_EQ(q.requested(16), 4);
 }
 
 TEST(Accuracy, QuantitiesHaveTitlesAndUnits) {

@@ -22,11 +22,11 @@ using multigrid::NodeMatrix;
 
 /// Bars between all nodes of a lattice [n, n, height] with a distance of at most sqrt(3). Each bar has its own
 /// stiffness, and rigid motions have zero energy.
-/// `held`: nodes with x = 0 are prescribed. `skew`: the matrix is unsymmetric, with translations still in its
+/// `constrained`: nodes with x = 0 are prescribed. `skew`: the matrix is unsymmetric, with translations still in its
 /// kernel.
 /// `few`: only the 14 bars per node that are edges when each cube is divided into six tetrahedra.
 struct Truss {
-  explicit Truss(int n_, bool held = false, Real skew = 0, int height_ = 0, bool few_ = false)
+  explicit Truss(int n_, bool constrained = false, Real skew = 0, int height_ = 0, bool few_ = false)
       : n(n_), height(height_ > 0 ? height_ : n_), few(few_) {
     const auto comm = Tpetra::getDefaultComm();
     const int n_nodes = n * n * height, rank = comm->getRank(), size = comm->getSize();
@@ -38,13 +38,14 @@ struct Truss {
     map = rcp(new Map(3 * n_nodes, Teuchos::arrayViewFromVector(unknowns), 0, comm));
     matrix = rcp(new CrsMatrix(map, 81));
     modes = rcp(new MultiVector(map, 6));
-    for (LocalIndex i = 0; i < static_cast<LocalIndex>(unknowns.size()); i += 3) add(unknowns[i] / 3, i, held, skew);
+    for (LocalIndex i = 0; i < static_cast<LocalIndex>(unknowns.size()); i += 3)
+      add(unknowns[i] / 3, i, constrained, skew);
     matrix->fillComplete();
   }
 
   std::array<int, 3> place(GlobalIndex node) const { return {int(node % n), int(node / n % n), int(node / n / n)}; }
 
-  void add(GlobalIndex node, LocalIndex row, bool held, Real skew) {
+  void add(GlobalIndex node, LocalIndex row, bool constrained, Real skew) {
     const auto p = place(node);
     Real diagonal[3][3] = {};
     for (int k = 0; k < 27; ++k) {
@@ -58,7 +59,7 @@ struct Truss {
       const Real stiffness = (1.5 + std::sin(Real(std::min(node, other) * 7 + std::max(node, other)))) / square;
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
-          const bool prescribed = held && (p[0] == 0 || q[0] == 0);
+          const bool prescribed = constrained && (p[0] == 0 || q[0] == 0);
           const Real value = stiffness * d[a] * d[b] + (a == b ? skew * (node < other ? 1 : -1) : 0);
           diagonal[a][b] += value;
           const Real entry = prescribed ? 0 : -value;
@@ -68,7 +69,7 @@ struct Truss {
     }
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) {
-        const Real entry = held && p[0] == 0 ? Real(a == b) : diagonal[a][b];
+        const Real entry = constrained && p[0] == 0 ? Real(a == b) : diagonal[a][b];
         const GlobalIndex column = 3 * node + b;
         matrix->insertGlobalValues(3 * node + a, 1, &entry, &column);
       }

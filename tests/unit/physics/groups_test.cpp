@@ -14,8 +14,8 @@ struct Complete : Physics<Complete> {
   };
 };
 template <class P>
-concept HasAllGroups =
-    HasRates<P> && HasTransport<P> && HasEstimate<P> && HasChange<P> && HasWarnings<P> && HasSolvability<P>;
+concept HasAllGroups = HasRates<P> && HasTransport<P> && HasEstimate<P> && HasChange<P> && HasWarnings<P> &&
+    HasTables<P> && HasSolvability<P>;
 struct WithAllGroups : Complete {
   struct Transport {
     static std::vector<CarriedQuantity> carried(const Scene&);
@@ -37,6 +37,10 @@ struct WithAllGroups : Complete {
     static std::vector<std::string> of_state(const Setting&, const std::vector<Real>&,
                                              const std::vector<assembly::OutputField>&);
   };
+  struct Tables {
+    static std::string name();
+    static std::unique_ptr<estimate::TableOfStates> table(const Setting&, assembly::System&);
+  };
   struct Solvability {
     static std::vector<std::string> doubts(const Setting&, bool);
   };
@@ -57,7 +61,7 @@ static_assert(HasAllGroups<WithAllGroups> && !HasAllGroups<Complete>);
 static_assert(has_complete_groups<Complete>() && has_complete_groups<WithAllGroups>());
 static_assert(!IsRates<LacksAFunction> && !IsRates<OtherResult> && !IsRates<OtherArgument>);
 static_assert(!IsTransport<LacksAFunction> && !IsEstimate<LacksAFunction> && !IsChange<LacksAFunction> &&
-              !IsWarnings<LacksAFunction> && !IsSolvability<LacksAFunction>);
+              !IsWarnings<LacksAFunction> && !IsTables<LacksAFunction> && !IsSolvability<LacksAFunction>);
 
 TEST(Groups, AreVisitedInPhysicsThatHaveThem) {
   std::vector<std::string> sections;

@@ -1,5 +1,6 @@
 // Preconditioners of blocks and groups, compared with the systems that they invert approximately. The systems are so
 // small that multigrid solves its part directly.
+#include "solve/minimal_residual.hpp"
 #include "solve/preconditioner.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -321,8 +322,8 @@ fields::Block of_cells(const std::string& name, int n) {
   return block;
 }
 
-/// Advected quantities: cycles of MueLu do not diverge for strong flow, and steps of minimal residual in the order of
-/// the flow, the default, reduce the residual.
+/// Advected quantities: cycles of MueLu do not diverge for strong flow, and those with factors in the order of the
+/// flow, the default, reduce the residual in strong circulation.
 TEST(Preconditioner, OfAdvectedBlocksConverge) {
   const int n = 100;
   auto block = of_cells("temperature", n);
@@ -337,9 +338,11 @@ TEST(Preconditioner, OfAdvectedBlocksConverge) {
     e.randomize(-1, 1);
     A->apply(e, rest);
     const Real start = type == "MueLu" ? e.norm2() : rest.norm2();
+    auto inverse = preconditioner->inverse();
+    if (type == "auto") inverse = solve::minimal_residual(wrapped(A), inverse, 4);  // storage hardly holds the mean
     for (int k = 0; k < 20; ++k) {
       A->apply(e, rest);
-      preconditioner->inverse()->apply(rest, z);
+      inverse->apply(rest, z);
       e.update(-1, z, 1);
     }
     A->apply(e, rest);

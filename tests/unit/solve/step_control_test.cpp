@@ -119,10 +119,19 @@ TEST(StepControl, LimitsRejectionsInARow) {
   StepControl control({.tolerance = 1e-2, .first = 1, .smallest = 1e-300, .largest = 1}, {1});
   Real error = 1e30;
   int n = 0;
-  for (auto verdict = Verdict::rejected; verdict == Verdict::rejected && n < 1000; ++n, error *= 0.7)
-    if (verdict = control.judge(control.memory().length, {{"error", error, 1}}, 1); verdict != Verdict::rejected)
+  for (auto verdict = Verdict::rejected; verdict == Verdict::rejected && n < 1000; ++n, error *= 0.7) {
+    verdict = control.judge(control.memory().length, {{"error", error, 1}}, 1);
+    if (verdict != Verdict::rejected) {
       EXPECT_EQ(verdict, Verdict::limited);
+    }
+  }
   EXPECT_EQ(n, StepControl::max_rejections + 1);
+}
+
+/// Steps shorter than the round-off of times near the last stop end there.
+TEST(StepControl, EndsAtTheLastStop) {
+  const StepControl control({.tolerance = 1e-2, .first = 1e-13, .smallest = 1e-13, .largest = 1}, {0.5, 1});
+  for (const Real t : {1 - 1e-13, 1 - 1e-15, 1.0}) EXPECT_EQ(control.end_of_step(t), 1);
 }
 
 /// Alternating iteration counts do not determine the step length.

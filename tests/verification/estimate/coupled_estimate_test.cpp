@@ -154,8 +154,8 @@ TEST(CoupledEstimate, HeatThatAFluidCarries) {
       scene.mesh.fractures["a"] = {flat ? std::vector<Real>{0.5, 0} : std::vector<Real>{0.5, 0, 0},
                                    flat ? std::vector<Real>{0.5, 1} : std::vector<Real>{0.5, 1, 1}};
       scene.flow->viscosity = 1;
-      hold(scene, "west", "1");
-      hold(scene, "east", "0");
+      constrain(scene, "west", "1");
+      constrain(scene, "east", "0");
       warm(scene, 0, conductivity, 0, P * conductivity);
       for (auto& [name, material] : scene.materials) {
         if (material.type == "joint") {

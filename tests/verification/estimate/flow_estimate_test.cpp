@@ -26,7 +26,7 @@ model::Scene open_box(const std::string& cell, int n, const std::string& pressur
   scene.mesh.upper_corner = flat ? std::vector<Real>{1, 1} : std::vector<Real>{1, 1, 1};
   if (!flat) scene.mesh.cells[2] = n / 2;
   scene.flow->viscosity = 1;
-  for (const std::string side : {"west", "east", "south", "north"}) hold(scene, side, pressure);
+  for (const std::string side : {"west", "east", "south", "north"}) constrain(scene, side, pressure);
   return scene;
 }
 
@@ -201,7 +201,7 @@ std::vector<Case> cases() {
                      scene.flow->initial_pressure = base::Expression("sin(pi*x)*sin(pi*y)");
                      scene.materials.at("rock").compressibility = storage;
                      scene.materials.at("joint").tangential_permeability = T / aperture;
-                     for (const std::string side : {"west", "east", "south", "north"}) hold(scene, side, "0");
+                     for (const std::string side : {"west", "east", "south", "north"}) constrain(scene, side, "0");
                      scene.time.end = n_steps * dt;
                      scene.time.steps = n_steps;
                      return scene;
@@ -223,7 +223,7 @@ std::vector<Case> cases() {
                    [=](int n) {
                      auto scene = open_box(cell, n, r + "*cos" + half);
                      cut(scene, 0, 1e8, 1e8);
-                     hold(scene, "end", "0", "a");
+                     constrain(scene, "end", "0", "a");
                      scene.boundary_conditions.at("end").boundary = "west";
                      return scene;
                    },
@@ -264,7 +264,7 @@ std::vector<Case> cases() {
                cut(scene, 1, T, R > 0 ? 1 / R : INFINITY);
                for (const std::string side : {"west", "east"}) {
                  scene.boundary_conditions.at(side).region = "bulk";  // without the end of the fracture
-                 hold(scene, side + " end", fmt::format("{:.17g}*cos({}*x)", A, k), "a");
+                 constrain(scene, side + " end", fmt::format("{:.17g}*cos({}*x)", A, k), "a");
                  scene.boundary_conditions.at(side + " end").boundary = side;
                }
                return scene;

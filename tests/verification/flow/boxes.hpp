@@ -32,8 +32,8 @@ inline model::Scene closed_box(const std::string& cell, bool with_b = true, int 
 }
 
 /// Prescribes a pressure on one side, for the rock and fractures that end there, or for a fracture only.
-inline void hold(model::Scene& scene, const std::string& side, const std::string& pressure,
-                 const std::string& fracture = "") {
+inline void constrain(model::Scene& scene, const std::string& side, const std::string& pressure,
+                      const std::string& fracture = "") {
   auto& condition = scene.boundary_conditions[side];
   condition.boundary = side;
   condition.pressure = base::Expression(pressure);

@@ -26,8 +26,8 @@ TEST(CompressibleFlow, DensityIsLinearInSteadyFlow) {
     for (const Real k : {1e-3, 1e4}) {
       auto scene = compressible_box(cell);
       scene.materials.at("joint").tangential_permeability = k;
-      hold(scene, "west", text_of(pressure_at(5)));
-      hold(scene, "east", text_of(pressure_at(1)));
+      constrain(scene, "west", text_of(pressure_at(5)));
+      constrain(scene, "east", text_of(pressure_at(1)));
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(steady).converged) << cell;
       const auto p = [](const auto& x, const auto&) { return Vector3{pressure_at(5 - 4 * x[0])}; };
@@ -58,7 +58,7 @@ TEST(CompressibleFlow, AColumnAtRestIsExact) {
       scene.materials.at("joint").tangential_permeability = 100;
       scene.materials.at("joint").normal_permeability = k_n;
       scene.materials.at("rock").permeability = {base::Expression(flat ? "1 + y" : "1 + z")};
-      hold(scene, flat ? "north" : "top", text_of(pressure_at(1)));
+      constrain(scene, flat ? "north" : "top", text_of(pressure_at(1)));
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(steady).converged) << cell;
       const auto p = [&](const auto& x, const auto&) { return Vector3{pressure_at(1 / (1 - 0.5 * (1 - x[up])))}; };
@@ -87,7 +87,7 @@ struct Doubled {
       scene.flow->reference_pressure = reference;
       scene.flow->initial_pressure = reference;
     }
-    hold(scene, "west", linear ? "1" : text_of(pressure_at(2)));
+    constrain(scene, "west", linear ? "1" : text_of(pressure_at(2)));
     return scene;
   }
 
@@ -194,8 +194,8 @@ TEST(CompressibleFlow, IterativeSolvesFindIt) {
   for (const auto& [cell, n] : std::vector<std::pair<std::string, int>>{{"triangle", 32}, {"hexahedron", 12}}) {
     auto scene = compressible_box(cell, n);
     scene.solver.linear_solver.type = "iterative";
-    hold(scene, "west", text_of(pressure_at(5)));
-    hold(scene, "east", text_of(pressure_at(1)));
+    constrain(scene, "west", text_of(pressure_at(5)));
+    constrain(scene, "east", text_of(pressure_at(1)));
     model::Model model(scene, Tpetra::getDefaultComm());
     const auto report = model.step_to(steady);
     ASSERT_TRUE(report.converged) << cell;

@@ -17,8 +17,8 @@ model::Scene network(const std::string& file, const std::string& solver) {
   scene.materials.at("rock").permeability = {base::Expression(1e-16)};
   scene.materials.at("joint").initial_aperture = 3e-4;
   scene.flow->viscosity = 1e-3;
-  hold(scene, "west", "1e6");
-  hold(scene, "east", "0");
+  constrain(scene, "west", "1e6");
+  constrain(scene, "east", "0");
   scene.solver.linear_solver.type = solver;
   return scene;
 }

@@ -15,7 +15,7 @@ TEST(FractureFlow, LinearPressureThroughANetworkIsExact) {
       scene.bulk.gravity = flat ? std::vector<Real>{0, -10} : std::vector<Real>{0, 0, -10};
       scene.materials.at("joint").tangential_permeability = k;
       for (const std::string side : {"west", "east", "south", "north", "bottom", "top"})
-        if (!flat || (side != "bottom" && side != "top")) hold(scene, side, flat ? "1+2*x-3*y" : "1+2*x-3*y+4*z");
+        if (!flat || (side != "bottom" && side != "top")) constrain(scene, side, flat ? "1+2*x-3*y" : "1+2*x-3*y+4*z");
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const Vector3 drive = flat ? Vector3{2, -3 + 30, 0} : Vector3{2, -3, 4 + 30};
@@ -46,8 +46,8 @@ TEST(FractureFlow, AFractureAcrossTheFlowResists) {
       auto scene = closed_box(cell);
       scene.materials.at("joint").normal_permeability = k;
       scene.materials.at("joint").tangential_permeability = k;
-      hold(scene, "west", "1");
-      hold(scene, "east", "0");
+      constrain(scene, "west", "1");
+      constrain(scene, "east", "0");
       scene.mesh.fractures.erase("a");
       scene.fractures.erase("a");
       model::Model model(scene, Tpetra::getDefaultComm());
@@ -71,8 +71,8 @@ TEST(FractureFlow, AFractureAlongTheFlowCarriesItsShare) {
       joint.initial_aperture = 0.1;
       joint.residual_aperture = 0.5;
       if (k > 0) joint.tangential_permeability = k;
-      hold(scene, "west", "1");
-      hold(scene, "east", "0");
+      constrain(scene, "west", "1");
+      constrain(scene, "east", "0");
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const Real Q = (1 + 0.5 * (k > 0 ? k : 0.25 / 12)) / viscosity;
@@ -91,8 +91,8 @@ TEST(FractureFlow, ARoughFractureCarriesLess) {
       joint.initial_aperture = a;
       joint.hydraulic_aperture = "Barton";
       joint.entry("joint roughness coefficient") = base::Expression(300);
-      hold(scene, "west", "1");
-      hold(scene, "east", "0");
+      constrain(scene, "west", "1");
+      constrain(scene, "east", "0");
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const Real e = a == 1 ? 1e6 / (9e4 * std::sqrt(300.0)) : 2, Q = (1 + e * e * e / 12) / viscosity;
@@ -109,10 +109,10 @@ TEST(FractureFlow, WhatFlowsIntoAnIntersectionFlowsOut) {
     auto& joint = scene.materials.at("joint");
     joint.normal_permeability = 1e-16;
     joint.tangential_permeability = 10;
-    hold(scene, "west", "1", "a");
-    hold(scene, "east", "0", "a");
-    hold(scene, "south", "0", "b");
-    hold(scene, "north", "0", "b");
+    constrain(scene, "west", "1", "a");
+    constrain(scene, "east", "0", "a");
+    constrain(scene, "south", "0", "b");
+    constrain(scene, "north", "0", "b");
     model::Model model(scene, Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(1).converged) << cell;
     const Real T = aperture * 10 / viscosity;
@@ -141,8 +141,8 @@ TEST(FractureFlow, ASealedFractureCutsAnOpenOne) {
       scene.materials.at("rock").permeability = {base::Expression(1e-18)};
       scene.fractures.at("b").material = "seal";
       scene.fractures.at("b").cuts = {"a"};
-      hold(scene, "west", "1", "a");
-      hold(scene, "east", "0", "a");
+      constrain(scene, "west", "1", "a");
+      constrain(scene, "east", "0", "a");
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged) << cell;
       const Real Q = aperture / viscosity / (1 / 10.0 + 0.01 / k);
@@ -160,7 +160,7 @@ TEST(FractureFlow, FluxesAndConductancesAtEnds) {
       auto& joint = scene.materials.at("joint");
       joint.normal_permeability = 1e-16;
       joint.tangential_permeability = 10;
-      hold(scene, "east", "7", in_fracture ? "a" : "");
+      constrain(scene, "east", "7", in_fracture ? "a" : "");
       scene.boundary_conditions.at("east").conductance = base::Expression(0.25);
       auto& west = scene.boundary_conditions["west"];
       west.boundary = "west";

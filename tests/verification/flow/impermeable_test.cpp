@@ -34,7 +34,7 @@ TEST(ImpermeableRock, LinearPressureInANetworkIsExact) {
     scene.flow->density = 3;
     scene.bulk.gravity = flat ? std::vector<Real>{0, -10} : std::vector<Real>{0, 0, -10};
     for (const std::string side : {"west", "east", "south", "north", "bottom", "top"})
-      if (!flat || (side != "bottom" && side != "top")) hold(scene, side, flat ? "1+2*x-3*y" : "1+2*x-3*y+4*z");
+      if (!flat || (side != "bottom" && side != "top")) constrain(scene, side, flat ? "1+2*x-3*y" : "1+2*x-3*y+4*z");
     model::Model model(scene, Tpetra::getDefaultComm());
     EXPECT_EQ(unknowns_of(model, "face pressure"), facets.at(cell));
     EXPECT_EQ(model.system().layouts().size(), 1);
@@ -71,7 +71,7 @@ TEST(ImpermeableRock, AFractureCarriesAnOutflow) {
   for (const std::string cell : all_cells) {
     SCOPED_TRACE(cell);
     auto scene = impermeable_box(cell);
-    hold(scene, "west", "1");
+    constrain(scene, "west", "1");
     auto& east = scene.boundary_conditions["east"];
     east.boundary = "east";
     east.fracture = "a";

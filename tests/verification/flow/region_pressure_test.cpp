@@ -37,8 +37,8 @@ TEST(RegionPressure, IsBetweenLinearProfiles) {
     for (const std::string solver : {"direct", "iterative"}) {
       SCOPED_TRACE(cell + " " + solver);
       auto scene = with_slab(cell, 0.25, 0.5, "(1 + 4*x)*t");
-      hold(scene, "west", "0");
-      hold(scene, "east", "1");
+      constrain(scene, "west", "0");
+      constrain(scene, "east", "1");
       scene.solver.linear_solver.type = solver;
       model::Model model(scene, Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged);

@@ -22,7 +22,7 @@ model::Scene box(const std::string& cell, int n, const std::string& scheme) {
 }
 
 void prescribe_sides(model::Scene& scene, const std::string& pressure) {
-  for (const std::string side : {"west", "east", "south", "north"}) hold(scene, side, pressure);
+  for (const std::string side : {"west", "east", "south", "north"}) constrain(scene, side, pressure);
 }
 
 physics::WellSection& add_well(model::Scene& scene, const std::vector<Real>& points) {
@@ -115,8 +115,8 @@ TEST(Wells, OnAFractureIn2D) {
     scene.materials.at("rock").permeability = {base::Expression(1e-14)};
     auto& joint = scene.materials.at("joint");
     joint.tangential_permeability = 10;
-    hold(scene, "west", "7", "a");
-    hold(scene, "east", "7", "a");
+    constrain(scene, "west", "7", "a");
+    constrain(scene, "east", "7", "a");
     auto& well = add_well(scene, {0.5, 0.5});
     well.rate = base::Expression(3);
     model::Model model(scene, Tpetra::getDefaultComm());
@@ -142,7 +142,7 @@ TEST(Wells, AtRestNothingFlows) {
     auto& joint = scene.materials["joint"];
     joint.type = "joint";
     joint.initial_aperture = aperture;
-    hold(scene, "top", "0");
+    constrain(scene, "top", "0");
     auto& well = add_well(scene, {0, 0, 0.9, 0, 0, 0.4, 0.25, 0.2, 0.1});
     well.pressure = base::Expression(-std::log(1 - 0.05) / 2);
     model::Model model(scene, Tpetra::getDefaultComm());
@@ -181,7 +181,7 @@ std::string refusal(const model::Scene& scene) {
 
 TEST(Wells, WrongOnesAreRefused) {
   auto scene = box("tetrahedron", 4, "auto");
-  hold(scene, "top", "0");
+  constrain(scene, "top", "0");
   auto& well = add_well(scene, {0, 0, 0.5, 0, 0, 1.5});
   well.rate = base::Expression(1);
   EXPECT_NE(refusal(scene).find("only 0.5 of 1 m are inside of the domain"), std::string::npos) << refusal(scene);
@@ -204,7 +204,7 @@ TEST(Wells, WrongOnesAreRefused) {
   joint.initial_aperture = aperture;
   EXPECT_NE(refusal(scene).find("lies in the fracture \"plane\""), std::string::npos) << refusal(scene);
   auto flat = box("triangle", 4, "auto");
-  hold(flat, "west", "0");
+  constrain(flat, "west", "0");
   add_well(flat, {2, 0}).rate = base::Expression(1);
   EXPECT_NE(refusal(flat).find("lies outside of the domain"), std::string::npos) << refusal(flat);
 }

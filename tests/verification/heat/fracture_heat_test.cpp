@@ -42,7 +42,7 @@ TEST(HeatInFractures, MixesWhereTheyMeet) {
       inject(scene, "west", "a", 2);
       inject(scene, "south", "b", 1);
       inject(scene, out, out == std::string("east") ? "a" : "b", -1.2);
-      hold(scene, other, "0", other == std::string("east") ? "a" : "b");
+      constrain(scene, other, "0", other == std::string("east") ? "a" : "b");
       prescribe_temperature(scene, "west", "20", "a");
       prescribe_temperature(scene, "south", "80", "b");
       prescribe_temperature(scene, "west", "20");
@@ -74,7 +74,7 @@ TEST(HeatInRock, IsCarriedWithTheFluid) {
       auto& west = scene.boundary_conditions["inflow"];
       west.boundary = "west";
       west.flux = Expression(-Pe / 2);
-      hold(scene, "east", "0");
+      constrain(scene, "east", "0");
       prescribe_temperature(scene, "west", "0");
       prescribe_temperature(scene, "east", "1");
       model::Model model(scene, Tpetra::getDefaultComm());
@@ -132,7 +132,7 @@ model::Scene pulled_joint(const std::string& cell, int n, Real rock_capacity, Re
   above.displacement = below.displacement;
   above.displacement[1] = Expression(lid);
   for (const std::string side : {"west", "east"}) {
-    hold(scene, side, "0");
+    constrain(scene, side, "0");
     scene.boundary_conditions[side].temperature = Expression("50 + t");
   }
   return scene;
@@ -198,6 +198,7 @@ TEST(HeatInFractures, IsInBalanceOverAThousandSteps) {
   if (Tpetra::getDefaultComm()->getSize() > 1) cases = {cases.back()};
   for (const auto& [cell, advection] : cases) {
     auto scene = pulled_joint(cell, 2, rc, c, "4e-3*sin(10*pi*t)^2");
+    scene.solver.tolerance = 1e-13;  // the defect below is the sum of the residuals of all steps
     scene.heat->advection = advection;
     model::Model model(scene, Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(dt).converged) << cell;

@@ -42,8 +42,8 @@ model::Scene block(const std::string& cell, const Units& u) {
   warm(scene, 350 / u.temperature, 2.5 / conductivity, 2.2e6 / heat, 4.2e6 / heat);
   scene.heat->fluid_expansion = 4e-4 * u.temperature;
   scene.heat->of_friction = true;
-  hold(scene, "west", fmt::format("{:.17g}", 3e6 / u.stress));
-  hold(scene, "east", "0");
+  constrain(scene, "west", fmt::format("{:.17g}", 3e6 / u.stress));
+  constrain(scene, "east", "0");
   prescribe_temperature(scene, "west", fmt::format("{:.17g}", 300 / u.temperature));
   prescribe_temperature(scene, "east", fmt::format("{:.17g}", 350 / u.temperature));
   auto &below = scene.boundary_conditions["floor"], &above = scene.boundary_conditions["lid"];

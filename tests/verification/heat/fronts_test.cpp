@@ -55,7 +55,7 @@ TEST(HeatInFractures, AFractureWarmsTheRock) {
       auto scene = is_flat(cell) ? rock_around_fracture(cell, {0, -8}, {20, 8}, {2 * n, 4 * n}, 1)
                                  : rock_around_fracture(cell, {0, -8, 0}, {20, 8, 1}, {2 * n, 4 * n, 1}, 1);
       inject(scene, "west", "a", aperture * v);
-      hold(scene, "east", "0", "a");
+      constrain(scene, "east", "0", "a");
       prescribe_temperature(scene, "west", "1", "a");
       errors.push_back(error_of_front(scene, t, 2 * n, {20.0 * 5 / 24, 20.0 * 11 / 24, 20.0 * 17 / 24}, exact));
     }
@@ -75,7 +75,7 @@ TEST(HeatInFractures, ParallelFracturesWarmTheRockBetweenThem) {
       auto scene = is_flat(cell) ? rock_around_fracture(cell, {0, -5}, {60, 5}, {6 * n, 2 * n}, 1)
                                  : rock_around_fracture(cell, {0, -5, 0}, {60, 5, 1}, {6 * n, 2 * n, 1}, 1);
       inject(scene, "west", "a", aperture * 1e-2);
-      hold(scene, "east", "0", "a");
+      constrain(scene, "east", "0", "a");
       prescribe_temperature(scene, "west", "1", "a");
       // Mean of the two faces adjacent to x = 50 m.
       const Real h = 60.0 / (6 * n);
@@ -111,7 +111,7 @@ TEST(HeatInFractures, AWellWarmsTheRock) {
     well.radius = 0.1;
     well.rate = Expression(Q / 4);
     scene.heat->wells["injector"].temperature = Expression(1);
-    for (const std::string side : {"east", "north"}) hold(scene, side, "0", "a");
+    for (const std::string side : {"east", "north"}) constrain(scene, side, "0", "a");
     model::Model model(scene, Tpetra::getDefaultComm());
     for (int step = 1; step <= n; ++step) ASSERT_TRUE(model.step_to(step * t / n).converged);
     const auto T = model.output("fracture temperature").values;

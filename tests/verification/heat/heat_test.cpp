@@ -267,7 +267,7 @@ TEST(Heat, GoesBesideMechanics) {
   }
 }
 
-TEST(Heat, ARegionIsHeld) {
+TEST(Heat, ARegionIsConstrained) {
   for (const std::string cell : all_cells) {
     auto scene = box(cell, 4);
     const int dim = is_flat(cell) ? 2 : 3;

@@ -26,7 +26,7 @@ model::Scene stream(const std::string& cell, bool in_fracture, int n, Real lengt
     auto& west = scene.boundary_conditions["inflow"];
     west.boundary = "west";
     west.flux = Expression(-v);
-    hold(scene, "east", "0");
+    constrain(scene, "east", "0");
     prescribe_temperature(scene, "west", "1");
   } else {
     scene.mesh.fractures["a"].upper_corner[0] = length;
@@ -34,7 +34,7 @@ model::Scene stream(const std::string& cell, bool in_fracture, int n, Real lengt
     scene.materials.at("rock").permeability = {Expression(1e-30)};
     scene.materials.at("joint").filling_conductivity = Expression(D);
     inject(scene, "west", "a", aperture * v);
-    hold(scene, "east", "0", "a");
+    constrain(scene, "east", "0", "a");
     prescribe_temperature(scene, "west", "1", "a");
   }
   scene.heat->advection = "second order";
@@ -158,7 +158,7 @@ TEST(SecondOrder, IsInBalanceWhereFracturesMeet) {
     scene.heat->advection = "second order";
     inject(scene, "west", "a", 1);
     inject(scene, "east", "a", -0.4);
-    hold(scene, "north", "0", "b");
+    constrain(scene, "north", "0", "b");
     prescribe_temperature(scene, "west", "1", "a");
     model::Model model(scene, Tpetra::getDefaultComm());
     const auto& mesh = model.mesh();

@@ -237,7 +237,7 @@ TEST(ThermoPoroelasticity, JacobianIsItsDerivative) {
       scene.heat->fluid_expansion = 0.4;
       scene.boundary_conditions["floor"].boundary = "south";
       scene.boundary_conditions["floor"].displacement.assign(is_flat(cell) ? 2 : 3, Expression(0));
-      hold(scene, "north", "1");
+      constrain(scene, "north", "1");
       prescribe_temperature(scene, "north", "3");
       for (const bool by_rate : {false, true}) {
         const std::string name = by_rate ? "by rate" : "by pressure";

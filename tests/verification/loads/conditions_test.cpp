@@ -28,7 +28,7 @@ std::vector<std::string> sides(int dim) {
 
 /// Block under equal pressure on all sides, turned by 30 degrees, with a statically determinate support at points. The
 /// stress is -p I in its plane, and the reactions vanish.
-TEST(ConfiningPressure, OnATurnedBlockHeldAtPoints) {
+TEST(ConfiningPressure, OnATurnedBlockConstrainedAtPoints) {
   constexpr Real p = 3;
   for (const int dim : {2, 3})
     for (const auto& cells : discretisations(dim)) {

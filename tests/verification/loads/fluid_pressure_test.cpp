@@ -50,6 +50,32 @@ TEST(FluidPressure, SlipAndOpeningOfABlock) {
     }
 }
 
+/// A filling with Biot's coefficient alpha passes the part alpha of the pressure to the rock.
+TEST(FluidPressure, OfAFillingActsInPart) {
+  for (const int dim : {2, 3})
+    for (const auto& d : discretisations(dim)) {
+      SCOPED_TRACE(d.name());
+      std::vector<Outputs> outputs;
+      std::vector<std::unique_ptr<model::Model>> models;
+      for (const auto& [pressure, alpha] : {std::pair("0.2*t", "0.25"), std::pair("0.05*t", "1")}) {
+        auto scene =
+            read_scene(fmt::format("verification/regimes_{}d.xml", dim),
+                       d.with({"Solver.tolerance=1e-13", fmt::format("Materials.joint.Biot coefficient={}", alpha),
+                               fmt::format("Fractures.fracture.fluid pressure={}", pressure),
+                               "Boundary conditions.moved.displacement=" +
+                                   std::string(dim == 2 ? "{0.15, -0.1}" : "{0.15, 0, -0.1}")}));
+        tie_sides(scene);
+        models.push_back(std::make_unique<model::Model>(scene, Tpetra::getDefaultComm()));
+        ASSERT_TRUE(models.back()->step_to(1).converged);
+        outputs.emplace_back(*models.back());
+      }
+      for (const std::string name : {"traction", "jump", "displacement"}) {
+        const auto &part = outputs[0][name].values, &all = outputs[1][name].values;
+        for (std::size_t i = 0; i < part.size(); ++i) EXPECT_NEAR(part[i], all[i], 1e-11) << name;
+      }
+    }
+}
+
 /// A pressure in all fractures is a uniform stress -p I in all rock. The tractions lambda are then those of the dry
 /// scene with an additional boundary load p n. Prescribed displacements get the additional strain p/(dim lambda + 2G).
 TEST(FluidPressure, InAllFracturesIsALoadOnTheBoundary) {

@@ -98,7 +98,9 @@ class Formulas {
     if (name == "elastic_jump") return elastic(i);
     if (name == "plastic_jump") return i == 0 ? gap() : at("jump", i) - elastic(i);
     if (name == "traction") return traction(i);
+    if (name == "aperture") return material_.initial_aperture({0, 0, 0}, 0) + at("jump", 0);
     if (name == "strength") return strength();
+    if (name == "slip_rate" || name == "friction_state") return row_.at(name);  // see rate_state_test.cpp
     return {};
   }
 
@@ -158,6 +160,7 @@ class Formulas {
     all = std::max(all, shear);
     if (all == 0) return state();  // in contact or not
     if (row_ == first_) return 1;
+    if (depends_on_rate()) return 2;
     return moved_ > 1e-9 * length() ? 2 : 1;
   }
 
@@ -187,8 +190,18 @@ class Formulas {
   Real strength() const {
     if (material_.bond != "none" || damaged() || material_.friction == "composed")
       return state() == 2 ? shear() : row_.at("strength");
+    if (depends_on_rate()) return N() > 0 ? N() * rated_coefficient() + value("radiation damping", 0) * rate() : 0;
     const Real s = path_length_ + (state() == 0 ? 0 : moved_);
     return N() * coefficient(s);
+  }
+  bool depends_on_rate() const { return material_.friction.starts_with("rate and state"); }
+  Real rate() const { return row_.at("slip_rate"); }
+  /// Returns the friction coefficient at the slip rate and state of the row.
+  Real rated_coefficient() const {
+    const Real a = value("direct effect", 0), V0 = value("reference slip rate", 1e-6),
+               x = V0 * row_.at("friction_state") / value("state evolution distance", 1),
+               psi = value("reference friction coefficient", 0.6) + value("evolution effect", 0) * std::log(x);
+    return a * std::asinh(rate() / (2 * V0) * std::exp(psi / a));
   }
   Real shear() const {
     Real size = 0;
@@ -244,9 +257,9 @@ void expect_columns(const laboratory::PointScene& scene, Counts& counts) {
         const auto name = i < 0 ? title : title.substr(0, end);
         const auto expected = formulas.expected(name, i);
         ASSERT_TRUE(expected) << "the column " << title << " has no formula here";
-        const Real size = name == "state" || name == "t" ? 1
-                          : i >= 0 && name != "traction" ? formulas.length()
-                                                         : formulas.stress();
+        const Real size = name == "state" || name == "t"                         ? 1
+                          : name == "aperture" || (i >= 0 && name != "traction") ? formulas.length()
+                                                                                 : formulas.stress();
         const bool rough = name == "strength" || name == "traction";
         EXPECT_NEAR(rows[r].at(title), *expected, (rough ? rounding : 1e-7) * size + 1e-300)
             << title << " in row " << r << " at t = " << rows[r].at("t");
@@ -264,8 +277,8 @@ TEST(Columns, OfAllScenesFollowTheirFormulas) {
     SCOPED_TRACE(file.path().string());
     expect_columns(read(file.path().filename()), counts);
   }
-  for (const char* title :
-       {"t", "state", "jump_n", "jump_t", "jump_t2", "elastic_jump_n", "plastic_jump_t1", "traction_t2", "strength"})
+  for (const char* title : {"t", "state", "jump_n", "jump_t", "jump_t2", "elastic_jump_n", "plastic_jump_t1",
+                            "traction_t2", "strength", "aperture"})
     EXPECT_GT(counts[title], 50) << title;
 }
 
@@ -282,7 +295,9 @@ TEST(Columns, TimesAreThoseOfTheScene) {
         jumps += !s.remark.empty();
         k < times.size() && s.t == times[k] ? ++k : ++others;
       }
-      EXPECT_LE(others, 2 * jumps);
+      if (!scene.time.tolerance) {
+        EXPECT_LE(others, 2 * jumps);
+      }
       if (curve.failure.empty()) EXPECT_EQ(k, times.size());
     }
   }

@@ -72,7 +72,7 @@ TEST(Poroelasticity, ADrainedBoxFollowsTheEffectiveStress) {
         const int dim = is_flat(cell) ? 2 : 3;
         press(scene, 3);
         for (const std::string side : {"west", "east", "south", "north", "bottom", "top"})
-          if (dim == 3 || (side != "bottom" && side != "top")) hold(scene, side, "1");
+          if (dim == 3 || (side != "bottom" && side != "top")) constrain(scene, side, "1");
         model::Model model(scene, Tpetra::getDefaultComm());
         ASSERT_TRUE(model.step_to(1e9).converged);
         expect_uniform(model, (-3 + biot) / (2 * G + dim * lambda), 1, -2, 1e-8);
@@ -86,7 +86,7 @@ TEST(Poroelasticity, PropertiesMayDependOnThePlace) {
     for (const bool by_regions : {false, true}) {
       auto scene = deforming_box(cell, true);
       press(scene, 3);
-      hold(scene, "west", "1");
+      constrain(scene, "west", "1");
       scene.flow->compressibility = 0.3;
       auto& rock = scene.materials.at("rock");
       rock.porosity = by_regions ? base::Expression(0.1) : base::Expression("x < 0.5 ? 0.1 : 0.4");
@@ -139,7 +139,7 @@ TEST(Poroelasticity, BiotModulusIsStorageAtConstantStrain) {
         for (const bool modulus : {false, true}) {
           auto scene = deforming_box(cell, true);
           press(scene, 3);
-          hold(scene, "west", "1");
+          constrain(scene, "west", "1");
           scene.flow->compressibility = c;
           auto& rock = scene.materials.at("rock");
           rock.porosity = 0.2;
@@ -181,10 +181,11 @@ TEST(Poroelasticity, WhatIsInBalanceAtTheStartStaysAtRest) {
       joint.initial_aperture = base::Expression(0.2);
       for (const std::string side : {"west", "east", "south", "north", "bottom", "top"}) {
         if (dim == 2 && (side == "bottom" || side == "top")) continue;
-        hold(scene, side, "2-" + up);
+        constrain(scene, side, "2-" + up);
         scene.boundary_conditions[side].displacement.assign(dim, base::Expression(0));
       }
-      for (const char* held : {"west held", "south held", "bottom held"}) scene.boundary_conditions.erase(held);
+      for (const char* constrained : {"west held", "south held", "bottom held"})
+        scene.boundary_conditions.erase(constrained);
       model::Model model(scene, Tpetra::getDefaultComm());
       for (const Real t : {1e-3, 1.0}) ASSERT_TRUE(model.step_to(t).converged);
       const auto pressure = [&](const Vector3& at, const auto&) { return Vector3{2 - at[dim - 1]}; };
@@ -288,8 +289,8 @@ TEST(Poroelasticity, InflowsAreThoseOfTheStep) {
     SCOPED_TRACE(cell);
     auto scene = deforming_box(cell, true);
     press(scene, 3);
-    hold(scene, "west", "0");
-    hold(scene, "east", "0");
+    constrain(scene, "west", "0");
+    constrain(scene, "east", "0");
     model::Model model(scene, Tpetra::getDefaultComm());
     auto& system = model.system();
     const auto inflow = [&](bool of_step) {

@@ -51,7 +51,7 @@ model::Scene parted_box(const std::string& cell, Real permeability) {
 
 void prescribe_rim(model::Scene& scene, const std::string& pressure, bool flat) {
   for (const std::string side : {"west", "east", "south", "north"})
-    if (!flat || side == "west" || side == "east") hold(scene, side, pressure);
+    if (!flat || side == "west" || side == "east") constrain(scene, side, pressure);
 }
 
 /// Returns the totals of the well, e.g. "rate", after two long steps, when storage changes vanish.

@@ -30,7 +30,7 @@ model::Scene rigid_network(const std::string& cell, int order) {
   return scene;
 }
 
-void hold(model::Scene& scene, const std::function<base::Expression(int)>& displacement) {
+void constrain(model::Scene& scene, const std::function<base::Expression(int)>& displacement) {
   const int dim = static_cast<int>(scene.mesh.lower_corner.size());
   for (const std::string side : {"west", "east", "south", "north", "bottom", "top"}) {
     if (dim == 2 && (side == "bottom" || side == "top")) continue;
@@ -88,7 +88,7 @@ TEST_P(Uniform, Strain) {
   const auto [cell, order] = GetParam();
   auto scene = rigid_network(cell, order);
   const auto patch = uniform_patch(mesh::testing::dim_of(cell), stress);
-  hold(scene, [&](int i) {
+  constrain(scene, [&](int i) {
     base::Expression u(fmt::format("{:.17g}*x + {:.17g}*y + {:.17g}*z", patch.strain[i][0], patch.strain[i][1],
                                    patch.dim == 3 ? patch.strain[i][2] : 0));
     u.compile();
@@ -104,7 +104,7 @@ TEST_P(Uniform, InitialStress) {
   constexpr int of_stress[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
   for (int k = 0; k < (flat ? 4 : 6); ++k)
     scene.bulk.initial_stress.emplace_back(stress[of_stress[k][0]][of_stress[k][1]]);
-  hold(scene, [](int) { return base::Expression(0); });
+  constrain(scene, [](int) { return base::Expression(0); });
   expect_uniform(scene, [](const Vector3&, int) { return 0; });
 }
 

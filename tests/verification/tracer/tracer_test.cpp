@@ -41,8 +41,8 @@ model::Scene column(const std::string& cell, int n, Real length, Real q) {
   scene.mesh.upper_corner[0] = length;
   scene.flow->source = 0;
   scene.boundary_conditions.clear();
-  hold(scene, "west", fmt::format("{}", q * length));
-  hold(scene, "east", "0");
+  constrain(scene, "west", fmt::format("{}", q * length));
+  constrain(scene, "east", "0");
   return scene;
 }
 
@@ -153,7 +153,7 @@ TEST(Tracer, DispersionDependsOnTheDirectionOfFlow) {
       auto sides = std::vector<std::string>{"west", "east", "south", "north"};
       if (!flat) sides.insert(sides.end(), {"bottom", "top"});
       for (const auto& side : sides) {
-        hold(scene, side, fmt::format("-({}*x + {}*y{})", u[0], u[1], flat ? "" : fmt::format(" + {}*z", u[2])));
+        constrain(scene, side, fmt::format("-({}*x + {}*y{})", u[0], u[1], flat ? "" : fmt::format(" + {}*z", u[2])));
         hold_concentration(scene, side, fmt::format("exp({}*x)", k));
       }
       model::Model model(scene, Tpetra::getDefaultComm());
@@ -224,7 +224,7 @@ TEST(TracerInFractures, DiffusesIntoTheRock) {
         joint.filling_retardation = Expression(100);
         joint.filling_dispersivity.along = 1;
         inject(scene, "west", "a", aperture * v);
-        hold(scene, "east", "0", "a");
+        constrain(scene, "east", "0", "a");
         hold_concentration(scene, "west", "1", "a");
         model::Model model(scene, Tpetra::getDefaultComm());
         const int steps = steady ? 1 : 2 * n;
@@ -297,6 +297,38 @@ TEST(Tracer, MovesLikeHeat) {
   }
 }
 
+/// Channels from the bottom, with the concentration 1, and from the west, without tracer, meet in tight fractures.
+/// Water of the mixed concentration leaves at the top, where the concentration 0 is prescribed: `tracer_inflows`
+/// contain the flow times the difference.
+TEST(Tracer, MixesWhereChannelsMeet) {
+  for (const std::string cell : {"tetrahedron", "hexahedron"}) {
+    auto scene = closed_box(cell);
+    scene.mesh.fractures["c"] = {{0, 0, 0.5}, {1, 1, 0.5}};
+    scene.fractures["c"].material = "joint";
+    scene.materials.at("rock").permeability = {Expression(1e-15)};
+    scene.materials.at("joint").normal_permeability = Expression(1e-15);
+    scene.materials.at("joint").tangential_permeability = Expression(1e-9);
+    dissolve(scene, 0, 1e-15, 0.1, 1);
+    auto &x = scene.flow->intersections["x"], &z = scene.flow->intersections["z"];
+    x.fractures = {"a", "c"};
+    x.permeability_area = 4;
+    z.fractures = {"a", "b"};
+    z.permeability_area = 10;
+    constrain(scene, "bottom", "1");
+    constrain(scene, "west", "0.8");
+    constrain(scene, "top", "0");
+    hold_concentration(scene, "bottom", "1");
+    hold_concentration(scene, "west", "0");
+    hold_concentration(scene, "top", "0");
+    model::Model model(scene, Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(1).converged) << cell;
+    const Real meeting = (10 + 4 * 0.8) / 24, from_below = 10 * (1 - meeting);
+    EXPECT_NEAR(inflow(model, "bottom"), from_below, 1e-8) << cell;
+    EXPECT_NEAR(inflow(model, "top has tracer"), -from_below, 1e-8) << cell;
+    EXPECT_NEAR(inflow(model, "bottom has tracer"), 0, 1e-8) << cell;
+  }
+}
+
 /// Uniform concentration in closed rock and fractures: c_0/(1 + decay dt) after each step.
 TEST(Tracer, Decays) {
   for (const std::string cell : all_cells) {
@@ -304,7 +336,7 @@ TEST(Tracer, Decays) {
     dissolve(scene, 3, 0.3, 0.2, 2);
     scene.tracer->half_life = 0.5;
     scene.materials.at("joint").filling_retardation = Expression(4);
-    hold(scene, "west", "0");
+    constrain(scene, "west", "0");
     model::Model model(scene, Tpetra::getDefaultComm());
     Real c = 3, t = 0;
     for (const Real dt : {0.1, 0.2, 0.1}) {

@@ -30,7 +30,7 @@ model::Scene pillar(const Discretisation& cells) {
   return scene;
 }
 
-TEST(Held, TractionAndRollersAlone) {
+TEST(Constrained, TractionAndRollersAlone) {
   for (int dim : {2, 3})
     for (const auto& cells : discretisations(dim)) {
       auto scene = pillar(cells);
@@ -47,7 +47,7 @@ TEST(Held, TractionAndRollersAlone) {
     }
 }
 
-TEST(Held, PeriodicSidesHoldTheRotationOnly) {
+TEST(Constrained, PeriodicSidesHoldTheRotationOnly) {
   auto scene = pillar({"quadrilateral", 1});
   scene.mesh.periodic = {"x"};
   prescribe(scene, "south", {"free", "0"});

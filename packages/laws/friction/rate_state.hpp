@@ -1,0 +1,240 @@
+// Friction that depends on the slip rate and on a state variable.
+#pragma once
+
+#include "laws/contact.hpp"
+#include "laws/exponentials.hpp"
+#include "laws/friction/radiation_damping.hpp"
+#include "laws/friction/rate_entries.hpp"
+#include "laws/kinds.hpp"
+
+#include <cmath>
+
+namespace sprekk::laws {
+
+/// Returns asinh(exp(y)) for any y.
+template <class T>
+KOKKOS_INLINE_FUNCTION T asinh_of_exponential(const T& y) {
+  using std::exp, std::log, std::sqrt;
+  if (y > 0) return y + log(1 + sqrt(1 + exp(-2 * y)));
+  const T u = exp(y);
+  return logarithm_of_one_and(T(u + u * u / (1 + sqrt(1 + u * u))));
+}
+
+/// Mean of exp(-x) between 0 and m >= 0, and its derivative.
+template <class T>
+KOKKOS_INLINE_FUNCTION T mean_decay(const T& m) {
+  return m > 1e-12 ? T(-exponential_less_one(T(-m)) / m) : T(1 - m / 2);
+}
+KOKKOS_INLINE_FUNCTION Real mean_decay_slope(Real m) {
+  if (m > 0.1) return (std::exp(-m) * (1 + m) - 1) / (m * m);
+  Real sum = 0, power = -0.5;  // power: (-1)^(k+1) m^k/(k+2)!
+  for (int k = 0; k < 9; ++k) {
+    sum += power * (k + 1);
+    power *= -m / (k + 3);
+  }
+  return sum;
+}
+
+/// Ageing law d theta/dt = 1 - V theta/L (Dieterich 1979), integrated over a step at constant slip rate. All functions:
+/// m is the slip of the step divided by L, r the length of the step divided by theta at its start.
+struct Ageing {
+  static constexpr const char *name = "rate and state",
+                              *meaning = "dependent on slip rate and state, ageing law (Dieterich 1979; Ruina 1983)";
+  /// Returns ln(theta/theta_old).
+  template <class T>
+  KOKKOS_INLINE_FUNCTION static T change(const T& m, Real r) {
+    using std::exp, std::log;
+    const T mean = mean_decay(m), relative = mean * (r - m);
+    if (relative < -0.5) return log(exp(-m) + r * mean);
+    if (relative >= 0) return logarithm_of_one_and(relative);
+    return -logarithm_of_one_and(T(-relative / (1 + relative)));
+  }
+  /// Derivative of change() in m.
+  KOKKOS_INLINE_FUNCTION static Real slope(Real m, Real r) {
+    const Real decay = std::exp(-m);
+    return (r * mean_decay_slope(m) - decay) / (decay + r * mean_decay(m));
+  }
+  /// Lower bound of slope() for all m, with the sign changed.
+  KOKKOS_INLINE_FUNCTION static Real steepest(Real) { return 1; }
+};
+
+/// Slip law d theta/dt = -V theta/L ln(V theta/L) (Ruina 1983), likewise.
+struct SlipEvolution {
+  static constexpr const char *name = "rate and state, slip law",
+                              *meaning = "dependent on slip rate and state, slip law (Ruina 1983)";
+  template <class T>
+  KOKKOS_INLINE_FUNCTION static T change(const T& m, Real r) {
+    using std::log;
+    return log(m / r) * exponential_less_one(T(-m));
+  }
+  KOKKOS_INLINE_FUNCTION static Real slope(Real m, Real r) { return -mean_decay(m) - std::log(m / r) * std::exp(-m); }
+  KOKKOS_INLINE_FUNCTION static Real steepest(Real r) { return 1.1 + (r < 1 ? -std::log(r) : Real(0)); }
+};
+
+/// Regularised rate-and-state friction with radiation damping, Pa, under the compression N = -lambda_n:
+///   b = N a asinh(V/(2 V0) exp(psi/a)) + eta V,  psi = f0 + b ln(V0 theta/L)
+/// (Rice, Lapusta and Ranjith 2001; Rice 1993). b = 0 for N <= 0 and for V = 0.
+///
+/// V is the slip rate at the end of a step. It is extrapolated from the mean rates V_m of this step and of the step
+/// before, where r is the ratio of the step lengths, new to old:
+///   ln V = ln V_m + D tanh(d/D),  d = r/(1 + r) ln(V_m/V_m,old),  D = 2
+/// This is second-order accurate and exact for steady slip; tanh limits the extrapolation after abrupt changes. At the
+/// start, the initial slip rate replaces V_m,old, and r/(1 + r) = 1. theta is integrated exactly for the slip rate V_m.
+///
+/// Without a duration, the bound is that of the slip rate and state at the end of the last step.
+template <class Evolution>
+struct RateStateFriction {
+  /// ln(theta/theta_i); ln(V_m/V_i) of the last step; its length, s; ln(V/V_i) at its end
+  static constexpr int n_history = 4;
+  Real direct = 0.01, evolution = 0.01;  ///< a, b
+  Real distance = 1;                     ///< L, m
+  Real reference_rate = 1e-6;            ///< V0, m/s
+  Real reference = 0.6;                  ///< f0
+  Real initial_rate = 1e-9;              ///< V_i, m/s
+  Real initial_state = 0;                ///< theta_i, s; 0: see log_initial_state()
+  Real initial_friction = 0;             ///< f_i; 0: none
+  Real damping = 0;                      ///< eta, Pa s/m
+
+  static constexpr const char *name = Evolution::name, *meaning = Evolution::meaning;
+  static std::vector<Parameter<RateStateFriction>> parameters() {
+    using Law = RateStateFriction;
+    return {
+        {&Law::direct, Entry{"direct effect", "-", base::positive(), "parameter a of the direct effect of the rate"}},
+        {&Law::evolution, Entry{"evolution effect", "-", base::at_least(0), "parameter b of the effect of the state"}},
+        {&Law::distance, evolution_distance_entry()},
+        {&Law::reference_rate,
+         Entry{"reference slip rate", "m/s", base::positive(), "slip rate V0 with the reference friction coefficient"}
+             .or_else(1e-6)},
+        {&Law::reference, Entry{"reference friction coefficient", "-", base::at_least(0),
+                                "friction coefficient f0 in steady slip at the reference slip rate"}
+                              .or_else(0.6)},
+        {&Law::initial_rate, initial_rate_entry()},
+        {&Law::initial_state, Entry{"initial state", "s", base::positive(),
+                                    "state variable theta at the start; absent: that of steady slip at the initial "
+                                    "slip rate, or of the initial friction coefficient"}
+                                  .may_be_absent()},
+        {&Law::initial_friction, Entry{"initial friction coefficient", "-", base::positive(),
+                                       "ratio of initial shear traction to compression, from which the state at "
+                                       "the start follows, in place of the initial state"}
+                                     .may_be_absent()},
+        {&Law::damping, damping_entry()}};
+  }
+  static std::vector<Quantity<RateStateFriction>> quantities() {
+    return {{"slip rate", "m/s", "at the end of the step",
+             [](const RateStateFriction& law, const Contact<Real>& at) -> Real {
+               return law.initial_rate * std::exp(at.history[3]);
+             }},
+            {"friction state", "s", "state variable theta",
+             [](const RateStateFriction& law, const Contact<Real>& at) -> Real {
+               return std::exp(law.log_initial_state() + at.history[0]);
+             }}};
+  }
+  std::string defect() const {
+    if (!(initial_friction > 0)) return "";
+    if (initial_state > 0) return "give either \"initial state\" or \"initial friction coefficient\"";
+    return evolution > 0 ? "" : "\"initial friction coefficient\": requires an \"evolution effect\" above 0";
+  }
+
+  /// ln(theta_i/s)
+  KOKKOS_INLINE_FUNCTION Real log_initial_state() const {
+    if (initial_state > 0) return std::log(initial_state);
+    if (!(initial_friction > 0)) return std::log(distance / initial_rate);
+    const Real x = initial_friction / direct;  // psi/a = ln(2 V0/V_i sinh(x))
+    const Real psi = direct * (std::log(reference_rate / initial_rate) + x + std::log1p(-std::exp(-2 * x)));
+    return std::log(distance / reference_rate) + (psi - reference) / evolution;
+  }
+
+  KOKKOS_INLINE_FUNCTION bool depends_on_rate() const { return true; }
+  /// Decrease of the friction coefficient per slip, 1/m, behind the tip of a rupture; 0: no rupture.
+  Real weakening() const { return evolution > direct ? evolution / distance : 0; }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T bound(const Contact<T>& at) const {
+    using std::exp, std::log;
+    const T N = -at.lambda_n;
+    if (!(N > 0)) return T(0);
+    if (!(at.duration > 0)) return of_rate(N, T(at.history[3]), T(at.history[0]));
+    if (!(at.slip_of_step > 0)) return T(0);
+    const T mean = log(at.slip_of_step / (at.duration * initial_rate));
+    return of_rate(N, at_end(mean, at), T(at.history[0] + Evolution::change(T(at.slip_of_step / distance), ratio(at))));
+  }
+  /// Derivative of bound() in the slip of the step, Pa/m; slip and duration are positive.
+  KOKKOS_INLINE_FUNCTION Real hardening(const Contact<Real>& at) const {
+    const Real N = -at.lambda_n, slip = at.slip_of_step;
+    if (!(N > 0) || !(slip > 0)) return 0;
+    const Real m = slip / distance, mean = std::log(slip / (at.duration * initial_rate)), end = at_end(mean, at),
+               bend = std::tanh(share(at) * (mean - at.history[1]) / limit),
+               by_mean = 1 + share(at) * (1 - bend * bend),
+               y = exponent(end, at.history[0] + Evolution::change(m, ratio(at))),
+               by_exponent = y > 0 ? 1 / std::sqrt(1 + std::exp(-2 * y)) : std::exp(y) / std::hypot(1, std::exp(y));
+    return (N * by_exponent * (direct * by_mean + evolution * m * Evolution::slope(m, ratio(at))) +
+            damping * initial_rate * std::exp(end) * by_mean) /
+           slip;
+  }
+  /// Upper bound of the decrease of bound() by slip, divided by the compression, 1/m; at least a/L.
+  KOKKOS_INLINE_FUNCTION Real softening(const Contact<Real>& at) const {
+    return (direct + evolution * Evolution::steepest(ratio(at))) / distance;
+  }
+  KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
+    if (!(at.duration > 0)) return;
+    const Real slip = std::fmax(at.slip_of_step, at.duration * slowest),
+               mean = std::log(slip / (at.duration * initial_rate));
+    history[3] = at_end(mean, at);
+    history[0] += Evolution::change(slip / distance, ratio(at));
+    history[1] = mean;
+    history[2] = at.duration;
+  }
+
+  /// Errors of ln V and of ln theta at the end of a step; negative in the first step. The error of ln V is that of its
+  /// extrapolation, from the deviation of ln V_m from the line through V_m,old and V_old. The error of ln theta is that
+  /// of a constant slip rate in the step. Perturbations of steady slip grow at most at the rate s = (b - a')/a' V/L,
+  /// a' = a + eta V/N (Rice and Ruina 1983, without stiffness); the error of their growth is (s dt)^2/12. Longer steps
+  /// suppress instabilities, since they are implicit.
+  KOKKOS_INLINE_FUNCTION StepDefect defect_of_step(const Contact<Real>& at) const {
+    const Real dt = at.duration, old = at.history[2];
+    if (!(old > 0)) return {-1, -1, 0};
+    const Real slip = std::fmax(at.slip_of_step, dt * slowest), mean = std::log(slip / (dt * initial_rate)),
+               expected = at.history[1] + (at.history[3] - at.history[1]) * (1 + dt / old), h = (dt + old) / 2,
+               m = slip / distance, part = m / (1 + m), N = -at.lambda_n,
+               resisting = N > 0 ? direct + damping * slip / (dt * N) : direct + evolution,
+               growth = m * std::fmax(evolution / resisting - 1, 0);
+    return {std::abs(mean - expected) * dt * (dt / 2 + h) / (2 * h * (h + old)),
+            std::abs(mean - at.history[1]) * part * std::fmin(1, ratio(at)) * dt / h / 12, growth * growth / 12};
+  }
+
+ private:
+  static constexpr Real limit = 2;         // D
+  static constexpr Real slowest = 1e-100;  // m/s
+
+  /// r/(1 + r)
+  KOKKOS_INLINE_FUNCTION static Real share(const Contact<Real>& at) { return share(at.duration, at.history); }
+  KOKKOS_INLINE_FUNCTION static Real share(Real dt, const History& history) { return dt / (dt + history[2]); }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Real ratio(const Contact<T>& at) const {
+    return at.duration * std::exp(-log_initial_state() - at.history[0]);
+  }
+  /// ln(V/V_i) at the end, from ln(V_m/V_i).
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T at_end(const T& mean, const Contact<T>& at) const {
+    using std::tanh;
+    return mean + limit * tanh(share(at.duration, at.history) * (mean - at.history[1]) / limit);
+  }
+  /// ln(V/(2 V0)) + psi/a from ln(V/V_i) and ln(theta/theta_i).
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T exponent(const T& rate, const T& state) const {
+    const Real start = std::log(initial_rate / (2 * reference_rate)),
+               psi = reference + evolution * (std::log(reference_rate / distance) + log_initial_state());
+    return start + rate + (psi + evolution * state) / direct;
+  }
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T of_rate(const T& N, const T& rate, const T& state) const {
+    using std::exp;
+    const T friction = N * direct * asinh_of_exponential(exponent(rate, state));
+    return damping > 0 ? T(friction + damping * initial_rate * exp(rate)) : friction;
+  }
+};
+
+using AgeingFriction = RateStateFriction<Ageing>;
+using SlipLawFriction = RateStateFriction<SlipEvolution>;
+
+}  // namespace sprekk::laws

@@ -1,0 +1,129 @@
+#include "physics/mechanics/unbroken.hpp"
+
+#include "base/entry_of_place.hpp"
+#include "base/over_ranks.hpp"
+#include "laws/joint.hpp"
+#include "physics/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sprekk::physics {
+
+bool is_unbroken(const Scene& scene, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face) {
+  const auto& unbroken = scene.fractures.at(mesh.fracture_names[face.fracture]).unbroken;
+  return unbroken && (*unbroken)(face.centre, 0) > 0;
+}
+
+void set_bond(laws::JointParameters& joint, bool unbroken) {
+  if (!unbroken) {
+    joint.law.bond = laws::Bond();
+    return;
+  }
+  joint.law.elastic = laws::Shear();
+  joint.law.gap.closure = laws::Closure();
+  joint.law.gap.initial = joint.initial_aperture = joint.min_aperture = 0;
+}
+
+Real process_zone(const laws::Joint& law, const laws::Elasticity& rock) {
+  constexpr Real factor = 0.8;
+  const Real stiffness = 4 * rock.G * (rock.G + rock.lambda) / (rock.lambda + 2 * rock.G);
+  return law.bond.visit([&](const auto& bond) {
+    if constexpr (requires { bond.tensile; })
+      if (bond.tensile > 0) return factor * stiffness * bond.energy / (bond.tensile * bond.tensile);
+    return std::numeric_limits<Real>::infinity();
+  });
+}
+
+void compare_unbroken(Comparison& c) {
+  const auto& scene = c.scene();
+  for (const auto& [name, fracture] : scene.fractures) {
+    if (!fracture.unbroken) continue;
+    const std::string place = fmt::format("Fractures > {} > \"unbroken\"", name);
+    if (!Mechanics::is_in(scene)) {
+      c.fail(place, "requires rock that deforms");
+      continue;
+    }
+    for_each_physics([&]<HasTransport P>(P) {
+      for (const auto& carried : P::Transport::carried(scene))
+        c.fail(place, fmt::format("not available with transport of the {}", carried.field));
+    });
+    for (const auto& [entry, given] :
+         {std::pair("plastic jump", !fracture.plastic_jump.empty()),
+          std::pair("prescribed slip", fracture.prescribed_slip && !fracture.prescribed_slip->slip.empty())})
+      if (given) c.fail(place, fmt::format("not available with a \"{}\": bonded faces have no jump", entry));
+    if (scene.host_fluid) c.fail(place, "not available with a fluid of a host program");
+    const auto* joint = c.joint_of(fracture);
+    if (!joint || !c.is_sound("Flow")) continue;
+    const auto fail = [&](const char* entry, const std::string& what) {
+      c.fail(fmt::format("Materials > {} > \"{}\"", fracture.material, entry),
+             what + fmt::format(", required by the \"unbroken\" part of \"{}\"", name));
+    };
+    if (joint->bond != laws::SofteningBond::name)
+      fail("bond", fmt::format("is {}; must be {}", joint->bond, laws::SofteningBond::name));
+    else if (const auto& strength = joint->entry("tensile strength"); !strength || is_zero(*strength))
+      fail("tensile strength", "must be above 0");
+    else if (const auto& cohesion = joint->entry("cohesion"); !cohesion || is_zero(*cohesion))
+      fail("cohesion", "must be above 0 as the only resistance of bonded faces to slip under tension");
+    if (joint->is_in_situ()) fail("reference state", fmt::format("is {}; must be unloaded", joint->reference_state));
+    if (!scene.flow) continue;
+    if (is_zero(joint->residual_aperture)) fail("residual aperture", "must be above 0");
+    if (joint->tangential_permeability) fail("tangential permeability", "must be absent");
+    const auto& across = joint->normal_permeability;
+    if (!across.is_constant() || std::isfinite(across({}, 0))) fail("normal permeability", "must be infinite");
+  }
+}
+
+std::string notch_doubt(const Scene& scene) {
+  if (!scene.flow || scene.flow->compressibility > 0 || flows_in_rock(scene)) return "";
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.fracture && (condition.pressure || condition.conductance)) return "";
+  for (const auto& [name, well] : scene.flow->wells)
+    if (well.pressure) return "";
+  for (const auto& [name, fracture] : scene.fractures)
+    if (fracture.unbroken)
+      return implausible(scene.origin + ": Sprekk > Flow > \"compressibility\"",
+                         fmt::format("is 0, \"{}\" is partly bonded, and the rock is impermeable", name),
+                         "the pressure in a closed notch is undetermined, and the run may fail",
+                         "give the \"compressibility\" of the fluid, 4.5e-10 for water");
+  return "";
+}
+
+std::vector<std::string> process_zone_warnings(const Setting& setting) {
+  constexpr Real faces_in_zone = 3;
+  const auto& [scene, mesh, start] = setting;
+  if (std::none_of(scene.fractures.begin(), scene.fractures.end(),
+                   [](const auto& named) { return named.second.unbroken.has_value(); }))
+    return {};
+  // per fracture: largest ratio of face and zone, and the smallest zone, negative
+  std::vector<Real> ratio(mesh.fracture_names.size(), 0), zone(ratio.size(), std::numeric_limits<Real>::lowest());
+  base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
+    const auto rock = elasticity(scene, mesh);
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+      const auto& face = mesh.fracture_faces[f];
+      if (!is_unbroken(scene, mesh, face)) continue;
+      const auto& material = joint_of(scene, mesh, face.single);
+      const auto law = at_place(scene, material, [&] { return material.joint(face.centre).law; });
+      for (const LocalIndex cell : face.cell) {
+        const Real length = process_zone(law, rock.of_cell(mesh, cell)),
+                   size = std::pow(face.area, Real(1) / (mesh.dim() - 1));
+        ratio[face.fracture] = std::max(ratio[face.fracture], size / length);
+        zone[face.fracture] = std::max(zone[face.fracture], -length);
+      }
+    }
+  });
+  ratio = base::max_over_ranks(*mesh.comm, ratio);
+  zone = base::max_over_ranks(*mesh.comm, zone);
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < ratio.size(); ++k)
+    if (ratio[k] * faces_in_zone > 1 + 1e-9)
+      warnings.push_back(
+          implausible(fmt::format("{}: Sprekk > Fractures > {} > \"unbroken\"", scene.origin, mesh.fracture_names[k]),
+                      fmt::format("a process zone of about {:.3g} m has {:.2g} faces", -zone[k], 1 / ratio[k]),
+                      "the front needs at least three",
+                      "use smaller cells, or less \"tensile strength\" with the same \"fracture energy\""));
+  return warnings;
+}
+
+}  // namespace sprekk::physics

@@ -1,0 +1,34 @@
+// Bonded parts of fractures, which open by their bond law.
+#pragma once
+
+#include "laws/elasticity.hpp"
+#include "laws/joint_parameters.hpp"
+#include "physics/physics.hpp"
+
+#include <string>
+#include <vector>
+
+namespace sprekk::physics {
+
+/// Returns whether a fracture face is bonded at the start: the entry "unbroken" of its fracture is above 0 at its
+/// centre.
+bool is_unbroken(const Scene& scene, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face);
+
+/// Changes the joint of a face in a fracture with the entry "unbroken". Bonded faces have no jump before they open:
+/// rigid closure and shear, no gap and no aperture. Other faces have no bond.
+void set_bond(laws::JointParameters& joint, bool unbroken);
+
+/// Returns an estimate 0.8 E' G_I/T^2 of the length of the process zone behind a front in opening, m (Hillerborg et al.
+/// 1976; factor of linear softening), with E' = E/(1 - nu^2); infinite without a bond of linear softening.
+Real process_zone(const laws::Joint& law, const laws::Elasticity& rock);
+
+/// Reports unbroken parts that are not available with other entries.
+void compare_unbroken(Comparison& comparison);
+
+/// Warns about an incompressible fluid in a fracture with bonded faces in impermeable rock; empty: none.
+std::string notch_doubt(const Scene& scene);
+
+/// Warns about bonded faces longer than a third of the process zone. Collective.
+std::vector<std::string> process_zone_warnings(const Setting& setting);
+
+}  // namespace sprekk::physics

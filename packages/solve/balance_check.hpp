@@ -1,0 +1,36 @@
+// Check of the sums of balance rows at the end of Newton's method.
+#pragma once
+
+#include "fields/block_problem.hpp"
+
+#include <array>
+
+namespace sprekk::solve {
+
+/// Sums of the rows of balances (Block::balance) in one solve. Round-off of large levels may hide the residuals of
+/// single rows, but fluxes cancel in the sum of all rows: stored quantity minus inflow. It is compared with the sum of
+/// |row| in the first iterate, which is the change of the flows in the step, plus the flows through constrained
+/// unknowns. Advected balances have a sum of their own.
+class BalanceCheck {
+ public:
+  explicit BalanceCheck(fields::BlockProblem& problem) : problem_(problem) {}
+
+  /// Takes the measures of the first iterate. If those of one kind of balances are at most the tolerance, the solve
+  /// does not change these balances, and their sum has no scale: it is not checked. Local.
+  void start(const std::vector<fields::Measure>& measures, Real tolerance);
+
+  /// Includes an iterate with the residual r. Collective.
+  void note(const fields::BlockVector& r);
+  /// Returns whether the sums of the last iterate x are at most 1e-7 of these flows. Collective.
+  bool closes(const fields::Evaluation& x) const;
+
+ private:
+  using Sums = std::array<Real, 2>;  ///< not advected, advected
+
+  fields::BlockProblem& problem_;
+  Sums flows_{}, surplus_{};
+  std::array<bool, 2> changes_{};
+  bool started_ = false;
+};
+
+}  // namespace sprekk::solve

@@ -1,0 +1,121 @@
+#include "solve/updated_factors.hpp"
+
+#include <Teuchos_LAPACK.hpp>
+#include <algorithm>
+
+#include "base/over_ranks.hpp"
+
+namespace sprekk::solve {
+namespace {
+
+constexpr Real enough = 1e-9;      // relative residual
+constexpr Real max_numbers = 1e9;  // of G and of I - Q G on all ranks
+constexpr int max_refinements = 3, max_failures = 3;
+
+}  // namespace
+
+void UpdatedFactors::restart(const LinearSolver& solver) {
+  solver_ = &solver;
+  n_factorisations_ = active_ ? 1 : n_factorisations_ + 1;
+  active_ = false;
+  change_.set_reference();
+}
+
+void UpdatedFactors::give_up() {
+  active_ = false;
+  n_factorisations_ = 0;
+  ++n_failures_;
+  G_ = {};
+}
+
+bool UpdatedFactors::follow() {
+  const bool unexpected = base::on_any_rank(*comm_, change_.mark_changes());
+  if (active_ && unexpected) {
+    active_ = false;
+    n_factorisations_ = 0;
+  }
+  if (!active_ && pays()) compute_responses();
+  if (active_ && !factor()) give_up();
+  return active_;
+}
+
+/// Returns whether the factorisations so far cost more than G and its use. Solves cost about twice the time of a
+/// factorisation with as many operations.
+bool UpdatedFactors::pays() const {
+  if (solver_ == nullptr || n_failures_ >= max_failures) return false;
+  const auto work = solver_->work();
+  const Real n = base::sum_over_ranks(*comm_, change_.n_marked()), ranks = comm_->getSize();
+  const Real dense = ranks * (2 * n * n * n / 3 + 40 * n * n);  // on every rank
+  const Real numbers = n * (ranks * n + change_.map()->getGlobalNumElements());
+  if (numbers > std::min(work.solve / 2, max_numbers)) return false;  // more memory than the factors
+  return n > 0 && n_factorisations_ * (work.setup - 2 * work.solve - dense) > n * 2 * work.solve;
+}
+
+void UpdatedFactors::compute_responses() {
+  change_.choose();
+  const int n = change_.n_chosen();
+  import_ = rcp(new fields::Import(J_->row_map(), change_.map()));
+  Vector U(J_->row_map()), column(J_->row_map()), needed(change_.map());
+  const std::size_t n_rows = base::n_local_elements(*change_.map());
+  G_.assign(n_rows * n, 0);
+  std::vector<Real> s(change_.n_here());
+  for (int j = 0; j < n; ++j) {
+    const int here = j - change_.first();
+    const bool owned = here >= 0 && here < change_.n_here();
+    if (owned) s[here] = 1;
+    change_.expand(s, U);
+    if (owned) s[here] = 0;
+    solver_->preconditioner()->apply(U, column);
+    needed.doImport(column, *import_, Tpetra::INSERT);
+    const auto value = needed.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (std::size_t i = 0; i < n_rows; ++i) G_[i * n + j] = value(i, 0);
+  }
+  active_ = true;
+}
+
+/// Factorises the transpose of I - Q G, which has the rows of I - Q G as its columns. Returns false if it is singular.
+bool UpdatedFactors::factor() {
+  change_.update();
+  const int n = change_.n_chosen(), n_here = change_.n_here();
+  std::vector<Real> rows(static_cast<std::size_t>(n) * n_here);
+  change_.add_product(G_, rows);
+  for (auto& value : rows) value = -value;
+  for (int i = 0; i < n_here; ++i) rows[static_cast<std::size_t>(i) * n + change_.first() + i] += 1;
+  lu_ = comm_->getSize() == 1 ? std::move(rows) : base::gather_over_ranks(*comm_, std::move(rows));
+  pivot_.resize(n);
+  int info = 0;
+  Teuchos::LAPACK<int, Real>().GETRF(n, n, lu_.data(), n, pivot_.data(), &info);
+  return base::on_all_ranks(*comm_, info == 0);
+}
+
+void UpdatedFactors::apply_inverse(const Vector& b, Vector& x) const {
+  const auto inverse = solver_->preconditioner();
+  inverse->apply(b, x);
+  Vector needed(change_.map());
+  needed.doImport(x, *import_, Tpetra::INSERT);
+  auto s = base::gather_over_ranks(*comm_, change_.product(needed.getLocalViewHost(Tpetra::Access::ReadOnly).data()));
+  const int n = change_.n_chosen();
+  int info = 0;
+  Teuchos::LAPACK<int, Real>().GETRS('T', n, 1, lu_.data(), n, pivot_.data(), s.data(), n, &info);
+  Vector U(b.getMap()), more(b.getMap());
+  change_.expand({s.begin() + change_.first(), s.begin() + change_.first() + change_.n_here()}, U);
+  inverse->apply(U, more);
+  x.update(1, more, 1);
+}
+
+LinearReport UpdatedFactors::solve(const Vector& b, Vector& x) {
+  LinearReport report;
+  report.iterations = 1;
+  Vector r(b, Teuchos::Copy), dx(x.getMap());
+  x.putScalar(0);
+  report.residual = 1;
+  for (int k = 0; k <= max_refinements && !(report.residual <= enough); ++k) {
+    apply_inverse(r, dx);
+    x.update(1, dx, 1);
+    report.residual = relative_residual(*J_, b, x, r);
+  }
+  report.converged = report.residual <= enough;
+  return report;
+}
+
+}  // namespace sprekk::solve
