@@ -34,6 +34,7 @@ PICTURES = {
     "contact/turns_3d": "loops",
     "flow": "flow",
     "gmsh": "bulk",
+    "growth": "bulk",
     "heat": "temperature",
     "networks": "maps bulk",
     "networks/biaxial_2d": "bulk",

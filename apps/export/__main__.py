@@ -1,8 +1,12 @@
-"""Exports the fractures of a run, with results as attributes, for geographic information systems.
+"""Exports the fractures of a run, with results as attributes, for geographic information systems, or a probe as a
+station of the SEAS benchmarks.
 
 DIR is the output directory of `sprekk run`. FILE is NAME.geojson or NAME.shp. In 2D each trace is a line. In 3D each
 fracture is a polygon, or several polygons (one for each face) if it is not plane. Units are m and Pa; compression is
-negative."""
+negative.
+
+FILE is NAME.dat for a station, a probe at a point of a fracture, given by --station. Its outputs must contain
+"plastic jump local" and "traction local"."""
 import argparse
 import re
 import sys
@@ -19,12 +23,16 @@ def arguments(words):
         prog="sprekk export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("directory", metavar="DIR", type=Path, help="output directory of a run")
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="NAME.geojson or NAME.shp")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="NAME.geojson, NAME.shp or NAME.dat")
     parser.add_argument(
         "--time", type=float, metavar="T", help="the step written nearest to T, in s (default: the last)"
     )
     parser.add_argument(
         "--crs", metavar="EPSG:N", help="the metric coordinate system of the scene (default: a local one)"
+    )
+    parser.add_argument("--station", metavar="PROBE", help="name of the probe, for NAME.dat")
+    parser.add_argument(
+        "--header", metavar="KEY=VALUE", action="append", default=[], help="line of the header of NAME.dat (repeatable)"
     )
     return parser.parse_args(words)
 
@@ -111,15 +119,28 @@ SIDECARS = (".shx", ".dbf", ".prj", ".cpg")  # further files of a shapefile
 WRITERS = {".geojson": write_geojson, ".json": write_geojson, ".shp": write_shapefile}
 
 
+def export_station(options):
+    """Writes the station file of a probe."""
+    import stations
+
+    if options.output.suffix.lower() != ".dat" or not options.station:
+        raise PlotError(f"{options.output}: a station requires both a file NAME.dat and --station PROBE")
+    put(lambda path, text: path.write_text(text), options.output,
+        stations.of_probe(options.directory, options.station, options.header))
+
+
 def export(options):
+    folder = options.output.parent
+    if not folder.is_dir():
+        raise PlotError(f"{options.output}: cannot be written: there is no folder {folder}")
+    if options.station or options.header or options.output.suffix.lower() == ".dat":
+        export_station(options)
+        return options.output
     import features
 
     write = WRITERS.get(options.output.suffix.lower())
     if write is None:
-        raise PlotError(f"{options.output}: ends in none of {', '.join(WRITERS)}")
-    folder = options.output.parent
-    if not folder.is_dir():
-        raise PlotError(f"{options.output}: cannot be written: there is no folder {folder}")
+        raise PlotError(f"{options.output}: ends in none of {', '.join([*WRITERS, '.dat'])}")
     if options.crs:
         metric_system(options.output, options.crs)
     found, plane = features.of_run(options.directory, options.time)

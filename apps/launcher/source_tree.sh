@@ -131,7 +131,7 @@ perf() {
   fi
   names=$(cd "$root/perf" && for name in */; do if [[ -f $name${name%/}.py ]]; then echo "${name%/}"; fi; done | paste -sd ' ')
   [[ $name && " $names " == *" $name "* ]] || usage_error "perf needs the name of a measurement, one of: $names${name:+; got \"$name\"}"
-  if [[ $name == networks || $name == contact || $name == laws || $name == meshing ]]; then needs+=("${mesh_packages[@]}"); fi
+  if [[ $name == networks || $name == contact || $name == upscale || $name == laws || $name == meshing ]]; then needs+=("${mesh_packages[@]}"); fi
   if [[ $name == contact || $name == experiments ]]; then needs+=(python3-scipy); fi
   if [[ $name == verification ]]; then needs+=(python3-sympy); fi
   if [[ $name == bulk ]]; then needs+=(python3-dolfinx); fi
@@ -139,7 +139,7 @@ perf() {
     install_missing "${packages[@]}"
     exec "$(debian_python)" -B "$root/perf" "$@"
   fi
-  if [[ $name == python ]]; then
+  if [[ $name == python || $name == upscale ]]; then
     needs+=("${python_packages[@]}") targets+=(sprekk_python)
     export PYTHONPATH=$build/python
   fi

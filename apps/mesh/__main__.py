@@ -17,7 +17,7 @@ from shapes import NetworkError
 
 OTHER_TOLERANCES = (0.7, 1.4, 0.5, 2.0)  # factors of the tolerance of repairs, tried if gmsh fails without a place
 CELLS_PER_SECOND, BYTES_PER_CELL, LARGE = 3e4, 1e3, 10**6  # rough estimates for gmsh, printed for large meshes
-POOR, MAX_POOR = 0.02, 5  # quality of cells for which repairs leave out a fracture, and rounds of such repairs
+MAX_POOR = 5  # rounds of repairs that leave out fractures at poor cells
 MAX_DRAWN = 0.2  # maximum share of random fractures drawn again; a larger share would change the statistics
 
 
@@ -66,12 +66,15 @@ def known_report(mesh, report, print_of_input):
 def made(network):
     """Returns plan, sizes and mesh."""
     import checks
-    import improve
     import mesher
     from plan import Plan
     from sizes import Sizes
     with doing(f"intersecting {len(network.fractures)} fractures"):
         plan = Plan(network)
+    if network.repair != "report":
+        plan.check_movements()
+        if plan.dim == 3:
+            plan.faces()
     if network.repair != "join":
         with doing(f"checking angles and distances of {len(plan.edges)} edges of fractures"):
             checks.check(plan)
@@ -83,8 +86,12 @@ def made(network):
               f"{cells * BYTES_PER_CELL / 1e9:.2g} GB", file=sys.stderr, flush=True)
     with doing(f"generating a mesh of about {cells:.2g} cells"):
         mesh = (mesher.make_mesh if network.repair == "report" else mesher.make_mesh_apart)(plan, sizes)
-    if network.repair == "join":
-        improve.improve(mesh, plan.dim)
+    for (owner, other), area in mesh.joined.items():
+        network.journal.note(plan.owners[owner], f"{area:.3g} m^2 are joined with {plan.owners[other].name}")
+    for (owner, other), area in mesh.removed.items():
+        network.journal.note(plan.owners[owner], f"{area:.3g} m^2 are left out at a small angle to {plan.owners[other].name}")
+    for owner, size in mesh.omitted.items():
+        network.journal.note(plan.owners[owner], f"{size:.3g} {'m' if plan.dim == 2 else 'm^2'} without cells are left out")
     return plan, sizes, mesh
 
 
@@ -99,12 +106,13 @@ def set_merged_apart(plan, mesh):
 
 
 def refuse_poor(plan, mesh):
-    """Raises an error with the fractures at cells of poor quality in 3D."""
+    """Raises an error with the fractures at cells of poor quality."""
     import numpy
     import report
+    from mesher import POOR
     quality, _ = report.gamma(mesh.points, mesh.cells)
     found = {}
-    for k in numpy.flatnonzero(quality < POOR) if plan.dim == 3 else ():
+    for k in numpy.flatnonzero(quality < POOR):
         at = numpy.isin(mesh.faces, mesh.cells[k]).any(axis=1)
         names = {plan.owners[owner].name for owner in set(mesh.face_owner[at].tolist()) if plan.is_fracture(owner)}
         if names:
@@ -117,14 +125,16 @@ def refuse_poor(plan, mesh):
 def made_of(text, network):
     """Returns plan, sizes and mesh, where random fractures may be drawn again.
 
-    If fractures cannot be meshed together, the last random one of each conflict is drawn again. Repairs leave out the
-    smallest one instead."""
+    If fractures cannot be meshed together, the last random one of each conflict is drawn again. Repairs refine the mesh
+    in 3D, and then leave out the smallest one."""
     from description import Network
-    again, poor_rounds, given, factors = {}, 0, network.tolerance, list(OTHER_TOLERANCES)
+    again, poor_rounds, attempts, given, factors = {}, 0, 0, network.tolerance, list(OTHER_TOLERANCES)
     while True:
+        attempts, before = attempts + 1, network.journal.state()
         try:
             plan, *rest = made(network)
-            if network.repair == "join" and poor_rounds < MAX_POOR:
+            plan.attempts = attempts
+            if network.repair != "report" and poor_rounds < MAX_POOR:
                 poor_rounds += 1
                 refuse_poor(plan, rest[-1])
             if network.repair == "join":
@@ -133,6 +143,7 @@ def made_of(text, network):
                                 for name, times in again.items()]
             return plan, *rest
         except NetworkError as error:
+            network.journal.restore(before, network.fractures)
             drawn = {name: k for k, name in enumerate(network.at_random)}
             if not error.features and network.repair == "join" and "gmsh" in str(error) and factors:
                 network.tolerance = given * factors.pop(0)
@@ -159,14 +170,16 @@ def make(options):
     text = description(options)
     with doing("reading and generating fractures"):
         network = Network(text)
-    report_file = options.output.with_suffix(options.output.suffix + ".json")
+    report_file, changes = (options.output.with_suffix(options.output.suffix + end) for end in (".json", ".csv"))
     print_of_input = fingerprint(text, network.files)
     known = known_report(options.output, report_file, print_of_input)
     if known and not options.picture:
         return None, known["warnings"]
     import checks
+    import estimate
     import msh_file
     import report
+    estimate.check(network)
     plan, sizes, mesh = made_of(text, network)
     groups = msh_file.groups_of(mesh, plan)
     plan.network.journal.compare(mesh, plan)
@@ -175,12 +188,12 @@ def make(options):
     try:
         msh_file.write(unfinished, mesh.points, groups, msh_file.singles_of(plan))
         content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(),
-                   "warnings": [] if network.repair == "join" else checks.near_fractures(plan),
+                   "warnings": checks.left_out(plan) + ([] if network.repair == "join" else checks.near_fractures(plan)),
                    **report.of_mesh(mesh, plan, sizes)}
         unfinished.replace(options.output)
     finally:
         unfinished.unlink(missing_ok=True)
-    plan.network.journal.write(options.output.with_suffix(options.output.suffix + ".csv"), plan.dim)
+    plan.network.journal.write(changes, plan.dim)
     report_file.write_text(json.dumps(content, indent=1) + "\n")
     if options.picture:
         import picture

@@ -2,9 +2,11 @@
 import numpy as np
 from arrange import closest, near_pairs, on_segment
 from domain import in_polygon
+from journal import REASONS
 from shapes import Errors, at
 
 NEAR = 10  # in minimum distances: closer fractures that do not meet give a warning
+MAX_LISTED = 5  # fractures left out
 MAX_NEAR = 5  # warnings about such pairs
 
 
@@ -83,6 +85,17 @@ def close_surfaces(plan):
         pair = names(plan, one, other)
         if pair:
             yield pair, too_close(plan, pair, gap, where)
+
+
+def left_out(plan):
+    """Returns a warning about fractures left out of the mesh, in a list; an empty list without them."""
+    journal = plan.network.journal
+    reasons = [f"{name}, {REASONS[entry.reason]}" for name, entry in journal.entries.items() if entry.reason]
+    reasons += [f"a feature of {path}, {text}" for path, text in journal.empty]
+    more = len(reasons) - MAX_LISTED
+    listed = "; ".join(reasons[:MAX_LISTED]) + (f"; and {more} more, see the table of the mesh" if more > 0 else "")
+    total = len(journal.entries) + len(journal.empty)
+    return [f"{len(reasons)} of {total} fractures are left out of the mesh: {listed}"] if reasons else []
 
 
 def near_fractures(plan):

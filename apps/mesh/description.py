@@ -9,7 +9,7 @@ from pathlib import Path
 
 import exchange
 import numpy as np
-from discs import has_discs, read_discs
+from discs import corners_for, has_discs, read_discs
 from domain import Body, rows
 from fab import read_fab
 from generator import at_random
@@ -49,6 +49,14 @@ def as_known(path):
 def opened(ring):
     """Returns the corners of a polygon without a repeated first corner."""
     return ring[:-1] if len(ring) > 3 and (ring[0] == ring[-1]).all() else ring
+
+
+def box_of(domain):
+    """Returns the lowest and the highest corner of a domain, or None for a polyhedron."""
+    if not domain or domain["faces"]:
+        return None
+    points = np.reshape(domain["corners"] or domain["lower corner"] + domain["upper corner"], (-1, 2 if domain["corners"] else len(domain["lower corner"])))
+    return points.min(axis=0), points.max(axis=0)
 
 
 def printable(properties):
@@ -111,13 +119,15 @@ class Network:
         dim, layers = 2 if of_domain == "lines" else 3, content.get("layers", [])
         if exchange.is_exchange(path) and "format" not in content:
             unused = [] if self.leaves_out else None
-            table = Table(exchange.read(path, dim, layers, unused, "unit" in content))
+            table = Table(exchange.read(path, dim, layers, unused, "unit" in content, box_of(domain)))
             self.left_out += unused or []
-            self.empty += [(content["file"], line.removeprefix("left out: ")) for line in unused or []]
+            self.empty += [(content["file"], line.removeprefix("left out: ")) for line in unused or [] if line.startswith("left out: ")]
         else:
             if layers:
                 raise NetworkError(f"{path}: has no layers, but its set has \"layers\"; only formats of GDAL have layers", [path])
             table = self.read(path, content, of_domain, dim)
+            self.left_out += [f"left out: {line}" for line in table.empty]
+            self.empty += [(content["file"], line) for line in table.empty]
         for row in table.fractures:
             row.points = row.points * content.get("unit", 1.0)
         if content.get("window"):
@@ -129,7 +139,7 @@ class Network:
     def read(self, path, content, of_domain, dim):
         """Returns the table of a file without GDAL. Its format is given, or by the ending, the titles and the domain."""
         kind, ending = content.get("format"), Path(path).suffix.lower()
-        corners, names = content.get("corners"), self.entries.get("entries of joints", ())
+        corners, names = self.corners(content), self.entries.get("entries of joints", ())
         if kind is None:
             kind = {".fab": "fab", ".dat": "dfnworks", ".ts": "gocad"}.get(ending)
         if of_domain != "lines" and kind in (None, "ellipses"):
@@ -138,8 +148,15 @@ class Network:
             kind = "points" if of_domain and has_points(path, dim) else of_domain
         readers = {"fab": read_fab, "dfnworks": lambda path: complete(read_dfnworks(path), path),
                    "gocad": lambda path: complete(read_gocad(path), path),
-                   "discs": lambda path: complete(read_discs(path, corners), path)}
-        return readers[kind](path) if kind in readers else read_table(path, kind, dim, names, corners or 32)
+                   "discs": lambda path: complete(read_discs(path, content.get("corners") or self.whole_edges()), path, self.leaves_out)}
+        return readers[kind](path) if kind in readers else read_table(path, kind, dim, names, corners, self.leaves_out)
+
+    def whole_edges(self):
+        return corners_for(self.entries["relative size"])
+
+    def corners(self, content):
+        """Returns the number of corners of the ellipses of a set."""
+        return content.get("corners") or (32 if self.repair == "report" else self.whole_edges())
 
     def cropped(self, row, content):
         """Returns the parts of a row in the window of its set."""
@@ -182,7 +199,7 @@ class Network:
                                          f"{name} {one}", of))
             for one, e in content.get("ellipses", {}).items():
                 found.append(Feature(kind, name, f'{kind} "{one}" of "{name}"',
-                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"], content.get("corners", 32)),
+                                     ellipse(e["centre"], e["radii"], e["strike"], e["dip"], e["rake"], self.corners(content)),
                                      f"{name} {one}", "ellipses"))
             number = len(found) + content.get("random", {}).get("number", 0)
             if number > MAX_FRACTURES:
@@ -258,7 +275,7 @@ class Network:
 
     def resolve(self, names):
         """Cuts off a part of the smallest fracture of a conflict, or leaves it out, unless one of them is changed already."""
-        if any(name in self.journal.why or name in self.resolved for name in names):
+        if any(name in self.resolved for name in names):
             return
         smallest, *larger = self.conflicting(names)
         others = " and ".join(name for name in names if name != smallest.name)
@@ -270,7 +287,7 @@ class Network:
                 self.journal.note(smallest, f"{lost:.3g} m^2 are cut off at a small angle to {others}")
                 smallest.points = part
                 return
-        self.journal.leave_out(smallest, f"in conflict with {others or 'itself'}", "conflict")
+        self.journal.leave_out(smallest, f"in conflict with {others}" if others else "cannot be joined with others within the limits", "conflict")
         self.fractures = [one for one in self.fractures if one is not smallest]
 
     def part_clear_of(self, smallest, other):
@@ -279,7 +296,7 @@ class Network:
             return None
         part = trimmed(smallest.points, other.points, TRIMMED * self.tolerance)
         self.trimmed.add(smallest.name)
-        if part is None or measure_of(part) < MIN_PART * measure_of(smallest.points):
+        if part is None or not MIN_PART < measure_of(part) / measure_of(smallest.points) < 1 - 1e-9:
             return None
         part = part[np.linalg.norm(part - np.roll(part, 1, axis=0), axis=1) > self.tolerance]
         return part if len(part) > 2 else None

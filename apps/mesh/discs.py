@@ -1,17 +1,15 @@
 """Tables of discs in space: columns in any order by their titles, with units."""
 import math
-import re
 
 from shapes import NetworkError, ellipse
-from tables import NUMBER, Row, Table, numbers, parted_title, rows_of
+from tables import Row, Table, numbers, parted_title, rows_of
+from titles import DEPTH, NUMBER, centre, plain
 
 LENGTHS = {"": 1.0, "m": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # in m
 ANGLES = {"": 1.0, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "rad": math.degrees(1)}  # in degrees
 QUANTITIES = {  # {quantity: (titles, units)}
-    "x": (("x", "cx", "xc", "center x", "centre x", "x center", "x centre", "easting", "east"), LENGTHS),
-    "y": (("y", "cy", "yc", "center y", "centre y", "y center", "y centre", "northing", "north"), LENGTHS),
-    "z": (("z", "cz", "zc", "center z", "centre z", "z center", "z centre", "elevation", "altitude"), LENGTHS),
-    "depth": (("depth", "tvd"), LENGTHS),
+    **{axis: (centre(axis), LENGTHS) for axis in "xyz"},
+    "depth": (DEPTH, LENGTHS),
     "dip": (("dip", "dip angle"), ANGLES),
     "dip direction": (("dip direction", "dip dir", "dipdir", "dipdirection", "dip azimuth"), ANGLES),
     "strike": (("strike",), ANGLES),
@@ -22,12 +20,11 @@ QUANTITIES = {  # {quantity: (titles, units)}
 }
 ONE_OF = ((("z",), ("depth",)), (("dip", "dip direction"), ("dip", "strike"), ("trend", "plunge")), (("radius",), ("diameter",)))
 LIMITS = {"dip": (0, 90), "plunge": (0, 90), "dip direction": (-360, 360), "strike": (-360, 360), "trend": (-360, 360)}
-CORNERS = 12
+MAX_CORNERS = 16  # chosen without the entry `corners`
 
 
 def quantity_of(title):
-    plain = " ".join(re.sub("[_.]", " ", title.lower()).split())
-    return next((name for name, (titles, _) in QUANTITIES.items() if plain in titles), None)
+    return next((name for name, (titles, _) in QUANTITIES.items() if plain(title) in titles), None)
 
 
 def has_discs(path):
@@ -81,7 +78,7 @@ class DiscColumns:
         for name, (k, factor) in self.of.items():
             word = words[k].strip() if k < len(words) else ""
             if not word:
-                table.errors.append(f"{place}: has no number in column {k + 1}, \"{name}\"")
+                table.lack(f"{place}: has no number in column {k + 1}, \"{name}\"")
                 return None
             x = numbers([word], place, table, [k + 1])
             if x is None:
@@ -102,7 +99,13 @@ def plane_of(row):
     return row["strike"] if "strike" in row else row["dip direction"] - 90, row["dip"]
 
 
-def read_discs(path, corners=None):
+def corners_for(relative_size):
+    """Returns the number of corners of a disc, such that a side has one or several edges of `relative_size` diameters."""
+    edges = math.ceil(math.pi / math.asin(min(relative_size, 0.5)))
+    return math.ceil(edges / math.ceil(edges / MAX_CORNERS))
+
+
+def read_discs(path, corners):
     """Returns the table of discs, each a polygon with `corners` corners and the same area. All errors are collected."""
     table, columns = Table(), None
     for k, words in rows_of(path):
@@ -126,5 +129,5 @@ def read_discs(path, corners=None):
         properties = {title: f"{text(column)} {unit}".strip() for column, title, unit in columns.named if text(column)}
         name = properties.pop("name", "")
         title = f"{name} ({place})" if name else f"{number} ({place})"
-        table.fractures.append(Row(title, ellipse(centre, (radius, radius), strike, dip, 0, corners or CORNERS), number, name, properties))
+        table.fractures.append(Row(title, ellipse(centre, (radius, radius), strike, dip, 0, corners), number, name, properties))
     return table

@@ -11,6 +11,7 @@ DRIVERS = {".geojson": "GeoJSON", ".json": "GeoJSON", ".shp": "ESRI Shapefile", 
 COMPANIONS = (".shx", ".dbf", ".prj", ".cpg")  # further files of a shapefile
 METRES, NO_UNIT = "6", "0"  # codes of $INSUNITS in DXF
 UNITS = {"1": "1 in", "2": "1 ft", "4": "1 mm", "5": "1 cm", "7": "1 km"}  # codes of other units
+FACTORS = {"1": 0.0254, "2": 0.3048, "4": 1e-3, "5": 1e-2, "7": 1e3}  # in m
 NAME, NUMBER = ("name",), ("id", "fid", "number")  # attributes, case-insensitive
 OF_DRAWING = {"layer", "paperspace", "subclasses", "linetype", "entityhandle", "text"}  # no data of joints
 
@@ -175,12 +176,25 @@ def refuse_degrees(path, layer, members, osr, has_unit=False):
         )
 
 
-def refuse_other_units(path):
-    """Rejects drawings with a unit other than metres."""
+def meets(extent, box):
+    """Returns whether (west, east, south, north) meets a box (low, high)."""
+    (west, east, south, north), (low, high) = extent, box
+    return bool(west <= high[0] and east >= low[0] and south <= high[1] and north >= low[1])
+
+
+def refuse_other_units(path, layer, box, left_out):
+    """Rejects drawings with a unit other than metres.
+
+    With a list `left_out` a drawing is in metres if it meets the box of the domain (low, high) only in metres; the list
+    gets a line. Programs often write a unit without meaning."""
     lines = [line.strip() for line in Path(path).read_text(encoding="latin-1").splitlines()]
     at = lines.index("$INSUNITS") if "$INSUNITS" in lines else len(lines)
     unit = lines[at + 2] if at + 2 < len(lines) else NO_UNIT
     if unit not in (METRES, NO_UNIT):
+        extent, factor = np.array(layer.GetExtent()), FACTORS.get(unit, 1.0)
+        if left_out is not None and box is not None and meets(extent, box) and not meets(factor * extent, box):
+            left_out.append(f"{path}: is in metres, not in the unit {unit} of DXF ($INSUNITS), since it meets the domain only in metres")
+            return
         raise NetworkError(
             f"{path}: is a drawing in the unit {unit} of DXF ($INSUNITS), expected {METRES}, "
             f"metres; give \"unit\" of its set, as \"{UNITS.get(unit, '1 m')}\", or \"1 m\" if its lengths are in metres",
@@ -202,7 +216,7 @@ def parts(geometry, ogr):
 def corners(part, is_polygon, dim, place, errors, unused):
     """Returns the corners of a fracture, or None. Appends to `errors`, or to `unused` for fractures without extent."""
     if is_polygon and dim == 2:
-        errors.append(f"{place}: is a polygon; in 2D fractures are lines")
+        unused.append(f"{place}: is a polygon; in 2D fractures are lines")
         return None
     if is_polygon and part.GetGeometryCount() > 1:
         errors.append(f"{place}: is a polygon with holes; divide it into polygons without holes")
@@ -283,11 +297,11 @@ def throw(errors, unused, left_out, path):
     found.throw([path])
 
 
-def read(path, dim, layers=(), left_out=None, has_unit=False):
+def read(path, dim, layers=(), left_out=None, has_unit=False, box=None):
     """Returns the fractures in the given layers of a file; all layers by default.
 
     All errors of the file are raised together, see throw() for `left_out`. With `has_unit` the scene gives the unit
-    of the coordinates."""
+    of the coordinates. `box` (low, high) bounds the domain."""
     gdal, ogr, osr = library()
     if not Path(path).is_file():
         raise NetworkError(
@@ -298,7 +312,7 @@ def read(path, dim, layers=(), left_out=None, has_unit=False):
     try:
         source = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=[DRIVERS[ending]])
         if ending == ".dxf" and not has_unit:
-            refuse_other_units(path)
+            refuse_other_units(path, source.GetLayer(0), box, left_out)
         for layer in (source.GetLayer(i) for i in range(source.GetLayerCount())):
             refuse_degrees(path, layer, members, osr, has_unit)
             for feature in layer:

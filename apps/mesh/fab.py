@@ -1,7 +1,8 @@
 """Fractures in FracMan's text format .fab, with x to the east, y to the north and z upwards."""
 import numpy as np
 from shapes import NetworkError
-from tables import Row, Table, complete, numbers, read_lines
+from tables import Row, Table, complete, numbers
+from text_file import read_lines
 
 METRES = ("m", "meter", "meters", "metre", "metres")
 ENTRIES = {"format": ("ascii",), "length_unit": METRES, "xaxis": ("east",)}  # allowed values in the header

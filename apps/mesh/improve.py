@@ -1,11 +1,13 @@
 """Moves nodes of a mesh near bad cells, for a better worst quality. Fractures and sides keep their shape.
 
-A node moves within the planes of its faces: freely in the rock, in the plane of one face plane, along a line of two."""
+In 3D a node moves freely in the rock, in the plane of one face plane, along a line of two. In 2D a node moves freely in
+the rock, and along a straight fracture or side. Nodes of constraints and of the sides of regions stay."""
 import numpy as np
 from report import gamma
 
 TARGET = 0.08  # quality below which cells are improved
-SWEEPS, STEPS = 8, (0.3, 0.1, 0.03, 0.01)
+LEAST = 0.03  # quality below which cells are improved further
+SWEEPS, MORE_SWEEPS, STEPS = 8, 20, (0.3, 0.1, 0.03, 0.01)
 DIRECTIONS = 24
 PARALLEL = 1e-6  # smaller singular values of normals belong to one plane
 
@@ -22,17 +24,15 @@ def directions(normals, random):
     return found / np.linalg.norm(found, axis=1)[:, None]
 
 
-def improve(mesh, dim):
-    """Moves nodes in 3D until no bad cell improves. Returns the number of moved nodes."""
-    if dim == 2:
-        return 0
+def improve(mesh):
+    """Moves nodes until no bad cell improves. Returns the number of moved nodes."""
     quality, _ = gamma(mesh.points, mesh.cells)
     random, moved = np.random.default_rng(1), set()
-    for _ in range(SWEEPS):
-        bad = np.flatnonzero(quality < TARGET)
+    for k in range(SWEEPS + MORE_SWEEPS):
+        bad = np.flatnonzero(quality < (TARGET if k < SWEEPS else LEAST))
         if not len(bad):
             break
-        nodes = np.unique(mesh.cells[bad])
+        nodes = np.setdiff1d(mesh.cells[bad], mesh.fixed)
         cells_of, faces_of = incident(mesh.cells, nodes), incident(mesh.faces, nodes)
         changed = 0
         for node in nodes.tolist():
@@ -55,8 +55,9 @@ def incident(elements, nodes):
 
 
 def signed(x):
-    """Returns the volumes of tetrahedra (n, 4, 3) times 6, with their orientation."""
-    return np.linalg.det(x[:, 1:] - x[:, :1])
+    """Returns the volumes of tetrahedra (n, 4, 3) times 6, or the areas of triangles (n, 3, 3) times 2, with their orientation."""
+    dim = x.shape[1] - 1
+    return np.linalg.det(x[:, 1:, :dim] - x[:, :1, :dim])
 
 
 def move(mesh, node, cells, faces, quality, random):
@@ -65,28 +66,18 @@ def move(mesh, node, cells, faces, quality, random):
     x, worst = mesh.points[star], quality[cells].min()
     if worst >= TARGET:
         return False
-    triangle = mesh.points[mesh.faces[faces]]
-    normals = np.cross(triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0])
-    normals /= np.linalg.norm(normals, axis=1)[:, None] if len(normals) else 1
-    normals = np.unique(np.round(normals * np.sign(normals[np.arange(len(normals)), abs(normals).argmax(axis=1)])[:, None], 9), axis=0) if len(normals) else normals
     orientation = np.sign(signed(x))
     size = np.median(np.linalg.norm(x - mesh.points[node], axis=2).max(axis=1))
-    rim = on_rim(mesh.faces[faces], mesh.face_owner[faces], node)
-    if rim is None or (len(rim) and not straight(mesh.points, node, rim)):
-        return False  # a corner
-    along = directions(normals if not len(rim) else np.empty((0, 3)), random)
-    if len(rim):
-        line = mesh.points[rim[0]] - mesh.points[node]
-        along = np.stack([line, -line]) / np.linalg.norm(line)
+    along = free_directions(mesh, node, faces, random)
     if not len(along):
         return False
     places = mesh.points[node] + size * np.concatenate([step * along for step in STEPS])
     at = np.argwhere(star == node)[:, 1]
     trial = np.repeat(x[None], len(places), axis=0)
     trial[:, np.arange(len(star)), at] = places[:, None]
-    flat = trial.reshape(-1, 4, 3)
+    flat = trial.reshape(-1, *x.shape[1:])
     valid = (np.sign(signed(flat)).reshape(len(places), -1) == orientation).all(axis=1)
-    found = gamma(flat.reshape(-1, 3), np.arange(4 * len(flat)).reshape(-1, 4))[0].reshape(len(places), -1)
+    found = gamma(flat.reshape(-1, 3), np.arange(flat[..., 0].size).reshape(flat.shape[:2]))[0].reshape(len(places), -1)
     least = np.where(valid, found.min(axis=1), -1)
     best = int(np.argmax(least))
     if least[best] <= 1.001 * worst:
@@ -94,6 +85,34 @@ def move(mesh, node, cells, faces, quality, random):
     mesh.points[node] = places[best]
     quality[cells] = found[best]
     return True
+
+
+def free_directions(mesh, node, faces, random):
+    """Returns unit vectors (n, 3) in which a node may move; none for a corner."""
+    of, owners = mesh.faces[faces], mesh.face_owner[faces]
+    rim = on_rim(of, owners, node) if of.shape[1] == 3 else on_line(of, owners, node)
+    if rim is None or (len(rim) and not straight(mesh.points, node, rim)):
+        return np.empty((0, 3))
+    if len(rim):
+        line = mesh.points[rim[0]] - mesh.points[node]
+        return np.stack([line, -line]) / np.linalg.norm(line)
+    return directions(normals_of(mesh.points[of]) if of.shape[1] == 3 else np.eye(3)[2:], random)
+
+
+def normals_of(triangles):
+    """Returns the different unit normals of triangles (n, 3, 3), regardless of their sign."""
+    if not len(triangles):
+        return np.empty((0, 3))
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    largest = normals[np.arange(len(normals)), abs(normals).argmax(axis=1)]
+    return np.unique(np.round(normals * np.sign(largest)[:, None], 9), axis=0)
+
+
+def on_line(lines, owners, node):
+    """Returns the neighbours of a node on a fracture or side in 2D, none in the rock; None for tips and intersections."""
+    ends = lines[lines != node].tolist()
+    return ends if not ends or (len(ends) == 2 and owners[0] == owners[1]) else None
 
 
 def on_rim(faces, owners, node):

@@ -42,9 +42,8 @@ def distance(x, points):
     """Returns the distances of points x (n, dim) from a polyline or a plane polygon."""
     flat = points.shape[1] == 2
     ring = points if flat else np.concatenate([points, points[:1]])
-    near = np.full(len(x), np.inf)
-    for a, b in zip(ring, ring[1:]):
-        near = np.minimum(near, on_segment(x, np.broadcast_to(a, x.shape), np.broadcast_to(b, x.shape))[1])
+    i, k = np.divmod(np.arange(len(x) * (len(ring) - 1)), len(ring) - 1)
+    near = on_segment(x[i], ring[k], ring[k + 1])[1].reshape(len(x), -1).min(axis=1)
     if not flat:
         plane = Plane(points)
         over = in_polygon(plane.inside(x), plane.inside(points))
@@ -73,6 +72,16 @@ class Journal:
             entry.meshed, entry.reason = 0.0, entry.reason or reason
             entry.notes.append(why)
 
+    def state(self):
+        """Returns the notes and reasons of all fractures by their names."""
+        return {name: (list(entry.notes), entry.reason, entry.meshed) for name, entry in self.entries.items()}
+
+    def restore(self, state, fractures):
+        """Restores the state of these fractures after an attempt without a mesh."""
+        for name in {one.name for one in fractures} & set(state):
+            notes, self.entries[name].reason, self.entries[name].meshed = state[name]
+            self.entries[name].notes = list(notes)
+
     def note(self, feature, why):
         if feature.kind == "fracture":
             notes = self.of(feature).notes
@@ -96,7 +105,7 @@ class Journal:
     def why(self):
         return {name for name, entry in self.entries.items() if entry.reason}
 
-    def state(self, entry):
+    def state_of(self, entry):
         if entry.reason:
             return "left out"
         return "joined" if entry.moved > self.noise or entry.notes else "kept"
@@ -109,7 +118,7 @@ class Journal:
         for path, _ in self.empty:
             files.setdefault(path, [])
         for path, entries in files.items():
-            state, why = Counter(map(self.state, entries)), Counter(REASONS[e.reason] for e in entries if e.reason)
+            state, why = Counter(map(self.state_of, entries)), Counter(REASONS[e.reason] for e in entries if e.reason)
             unread = [REASONS["outside" if "outside of" in text else "empty"] for one, text in self.empty if one == path]
             why.update(unread)
             moved = max((e.moved for e in entries if not e.reason), default=0)
@@ -129,7 +138,7 @@ class Journal:
             for entry in self.entries.values():
                 f = entry.feature
                 meshed = entry.given if entry.meshed is None else entry.meshed
-                rows.writerow([f.source, f.group, f.single, f.name, self.state(entry), f"{entry.given:.9g}", f"{meshed:.9g}",
+                rows.writerow([f.source, f.group, f.single, f.name, self.state_of(entry), f"{entry.given:.9g}", f"{meshed:.9g}",
                                f"{entry.moved:.3g}" if entry.moved > self.noise else "0", "; ".join(entry.notes)])
             for path_of, why in self.empty:
                 rows.writerow([path_of, "", "", "", "left out", "0", "0", "0", why])

@@ -6,14 +6,22 @@ import re
 import signal
 import sys
 import tempfile
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, field
 
 import gmsh
 import numpy as np
+from improve import improve
 from intersecting import intersecting
+from progress import doing
+from report import gamma, measure
 from shapes import NetworkError
+from surface_mesh import SIDES, SurfaceMesh
 
 FAR = 20  # in diagonals of the domain
+POOR = 0.02  # quality of cells that repairs avoid
+PRECISION = 1e-3  # of the number of edges of a line, relative; the default of gmsh, 1e-9, requires more time than the cells
+ROUNDS, BISECTIONS = 6, 2  # repeated generations of cells; the first ones only bisect triangles at poor cells
 
 
 @dataclass
@@ -21,12 +29,21 @@ class Mesh:
     """Cells and faces by the indices of their nodes.
 
     The faces of dimension d - 1 have the index of their owner in the plan. The intersections of fractures have
-    dimension d - 2."""
+    dimension d - 2. `fixed` are the nodes of constraints and of the sides of regions, `tags` the tags of nodes in gmsh.
+    `joined` {(owner without triangles, owner with them): area of triangles that both would have}. `removed` {(owner, other
+    owner): area of triangles of the first removed at poor cells between both}. `omitted` {owner: length or area of faces
+    without cells}."""
     points: np.ndarray
     cells: np.ndarray
     faces: np.ndarray
     face_owner: np.ndarray
     intersections: np.ndarray
+    fixed: np.ndarray
+    tags: np.ndarray = None
+    joined: dict = field(default_factory=dict)
+    removed: dict = field(default_factory=dict)
+    omitted: dict = field(default_factory=dict)
+    generations: int = 1  # of cells
 
 
 def make_mesh(plan, sizes):
@@ -34,19 +51,70 @@ def make_mesh(plan, sizes):
     gmsh.initialize(readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.logger.start()
-        origin = origin_of(plan.network.domain)
-        model = Model(plan, origin)
+        model = Model(plan, origin_of(plan.network.domain))
         with tempfile.TemporaryDirectory() as folder:
-            set_sizes(sizes, origin, folder)
-            try:
-                gmsh.model.mesh.generate(plan.dim)
-            except Exception as error:  # gmsh raises untyped exceptions
-                said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
-                raise model.failure(said or [str(error)]) from None
-        return model.mesh(sizes)
+            set_sizes(sizes, model.origin, folder)
+            if plan.network.repair == "report" or plan.dim == 2:
+                model.generate(plan.dim)
+                mesh = model.mesh(sizes)
+                if plan.network.repair != "report":
+                    improve(mesh)
+                return mesh
+            return repaired_mesh(model, sizes, folder)
     finally:
         gmsh.finalize()
+
+
+def repaired_mesh(model, sizes, folder):
+    """Returns the mesh of a repaired network in 3D.
+
+    Triangles at failures of gmsh and at poor cells are bisected, and the cells generated again. Poor cells that remain
+    are in narrow wedges between fractures. The smaller fracture loses its triangles there."""
+    with doing(f"generating triangles of {len(model.faces)} faces"):
+        model.generate(2)
+    surfaces = SurfaceMesh(model)
+    joined, removed, best, worst = surfaces.without_shared(), Counter(), None, None
+    for _ in range(ROUNDS):
+        marked = surfaces.folded()
+        if not marked.any():
+            break
+        bisect(surfaces, marked, sizes, folder)
+    for k in range(ROUNDS + 1):
+        try:
+            with doing("generating cells" + (f" again (attempt {k + 1} of at most {ROUNDS + 1})" if k else "")):
+                model.generate(3)
+            mesh = model.mesh(sizes)
+            improve(mesh)
+            quality, _ = gamma(mesh.points, mesh.cells)
+            poor = mesh.cells[quality < POOR]
+            if best is None or len(poor) < worst:
+                best, worst = mesh, len(poor)
+                mesh.joined, mesh.removed = joined, dict(removed)
+            if not len(poor) or k == ROUNDS:
+                break
+            surfaces = SurfaceMesh(model)
+            if k >= BISECTIONS:
+                found = surfaces.without_narrow(mesh.tags[poor], removed)
+                if not found:
+                    break
+                removed.update(found)
+                continue
+            marked = surfaces.beside(mesh.tags[poor])
+        except NetworkError as error:
+            surfaces = SurfaceMesh(model)
+            marked = surfaces.intersecting()
+            if k == ROUNDS or not marked.any():
+                if best is None:
+                    raise error
+                break
+        bisect(surfaces, marked, sizes, folder)
+    best.generations = k + 1
+    return best
+
+
+def bisect(surfaces, marked, sizes, folder):
+    sizes.grid.take(*surfaces.bisect(marked))
+    set_sizes(sizes, surfaces.model.origin, folder)
 
 
 def make_mesh_apart(plan, sizes):
@@ -60,8 +128,8 @@ def make_mesh_apart(plan, sizes):
                 ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # end with the parent
                 try:
                     found = make_mesh(plan, sizes)
-                except NetworkError as error:
-                    found = str(error), error.features
+                except Exception as error:  # includes exceptions of gmsh
+                    found = str(error) if isinstance(error, NetworkError) else f"mesh generation failed: {error!r}", getattr(error, "features", ())
                 with open(path, "wb") as file:
                     pickle.dump(found, file)
             finally:
@@ -108,6 +176,17 @@ class Model:
         if plan.dim == 3:
             gmsh.model.mesh.embed(2, [face.tag for face in self.faces if face.tag not in outer], 3, 1)
 
+    def generate(self, dim):
+        """Generates the mesh up to a dimension. Raises a NetworkError with the message of gmsh if gmsh fails."""
+        gmsh.logger.start()
+        try:
+            gmsh.model.mesh.generate(dim)
+        except Exception as error:  # gmsh raises untyped exceptions
+            said = [line[6:].strip(" :") for line in gmsh.logger.get() if line.startswith("Error")]
+            raise self.failure(said or [str(error)]) from None
+        finally:
+            gmsh.logger.stop()
+
     def turned(self, face):
         """Returns the outer ring, beginning with the three consecutive points that determine the plane best, as gmsh requires."""
         ring, plane = face.rings[0], self.plan.surfaces[face.owner].plane
@@ -119,16 +198,20 @@ class Model:
         first = int(np.argmin((error + 1e-9 * area.max()) / np.maximum(area, 1e-300)))
         return ring[first:] + ring[:first]
 
+    def curves(self, face):
+        """Returns the tags of all lines of a face."""
+        return [*(abs(line) for ring in face.rings for line in self.loop(ring)), *(self.line[edge] for edge in face.edges)]
+
     def loop(self, ring):
         return [self.line[a, b] if a < b else -self.line[b, a] for a, b in zip(ring, ring[1:] + ring[:1])]
 
     def failure(self, said):
         """Returns an error with the message of gmsh and the names of the features with the tags in this message.
 
-        For other messages in 3D these are the features with intersecting triangles."""
+        In 3D these are also all features with intersecting triangles, since gmsh names one pair."""
         owners = {face.tag: self.plan.owners[face.owner] for face in self.faces}
         pairs = [[int(tag) for tag in re.findall(r"surface (\d+)", line) if int(tag) in owners] for line in said]
-        pairs = [pair for pair in pairs if pair] or (self.intersecting() if self.plan.dim == 3 else [])
+        pairs = [pair for pair in pairs if pair] + (self.intersecting() if self.plan.dim == 3 else [])
         named = {tuple(sorted({owners[tag].name for tag in pair if owners[tag].kind == "fracture"})) for pair in pairs} - {()}
         names = list(dict.fromkeys(owners[tag].name for pair in pairs for tag in pair))
         where = f", at {' and '.join(names[:4])}" if names else ""
@@ -137,18 +220,19 @@ class Model:
 
     def intersecting(self):
         """Returns the pairs of tags of faces whose triangles intersect."""
-        number, points = self.nodes()
+        number, points, _ = self.nodes()
         of_face = [(face.tag, self.elements(2, face.tag, number)) for face in self.faces]
         tag = np.concatenate([np.full(len(nodes), one) for one, nodes in of_face])
         i, j = intersecting(points, np.concatenate([nodes for _, nodes in of_face]))
         return sorted(set(zip(tag[i].tolist(), tag[j].tolist())))
 
     def nodes(self):
-        """Returns the index of each node by its tag, and the points."""
+        """Returns the index of each node by its tag, the points, and the tags."""
         tags, x, _ = gmsh.model.mesh.getNodes()
+        tags = tags.astype(int)
         number = np.zeros(int(tags.max()) + 1, int)
-        number[tags.astype(int)] = np.arange(len(tags))
-        return number, x.reshape(-1, 3) + self.origin
+        number[tags] = np.arange(len(tags))
+        return number, x.reshape(-1, 3) + self.origin, tags
 
     def elements(self, of, tag, number):
         """Returns the elements [element, node] of an entity of dimension `of`."""
@@ -157,7 +241,7 @@ class Model:
 
     def mesh(self, sizes):
         dim = self.plan.dim
-        number, points = self.nodes()
+        number, points, tags = self.nodes()
 
         def elements(of, tag=-1):
             return self.elements(of, tag, number)
@@ -165,21 +249,39 @@ class Model:
         cells = elements(dim)
         if not len(cells):
             raise NetworkError("gmsh generated no cells; increase \"tolerance\" to join close fractures")
-        owned = []
         if dim == 2:
             owned = [(foremost(self.plan, of), elements(1, self.line[edge])) for edge, of in self.plan.edges.items()]
-            owned = [(owner, nodes) for owner, nodes in owned if owner is not None]
             meeting = number[[int(gmsh.model.mesh.getNodes(0, p + 1)[0][0]) for p in sorted(sizes.intersections)]].reshape(-1, 1)
         else:
-            kinds = [self.plan.owners[face.owner].kind for face in self.faces]
-            owned = [(face.owner, elements(2, face.tag)) for face, kind in zip(self.faces, kinds) if kind in ("fracture", "boundary")]
+            owned = [(foremost(self.plan, {face.owner}), elements(2, face.tag)) for face in self.faces]
             meeting = np.concatenate([elements(1, self.line[edge]) for edge in sorted(sizes.intersections)] or [np.zeros((0, 2), int)])
+            meeting = meeting[self.are_shared(meeting, [(owner, nodes) for owner, nodes in owned if owner is not None], len(points))]
+        fixed = np.concatenate([nodes.ravel() for owner, nodes in owned if owner is None] or [np.zeros(0, int)])
+        owned = [(owner, nodes) for owner, nodes in owned if owner is not None]
         faces = np.concatenate([nodes for _, nodes in owned])
         owner = np.concatenate([np.full(len(nodes), k) for k, nodes in owned])
         used = np.unique(cells)
         new = np.full(len(points), -1)
         new[used] = np.arange(len(used))
-        return Mesh(points[used], new[cells], new[faces], owner, new[meeting])
+        inside = (new[faces] >= 0).all(axis=1)  # gmsh leaves a few embedded lines without cells
+        omitted = Counter()
+        for k, size in zip(owner[~inside].tolist(), measure(points, faces[~inside]).tolist()):
+            omitted[k] += size
+        faces, owner, meeting = faces[inside], owner[inside], meeting[(new[meeting] >= 0).all(axis=1)]
+        fixed = fixed[new[fixed] >= 0]
+        return Mesh(points[used], new[cells], new[faces], owner, new[meeting], np.unique(new[fixed]), tags[used],
+                    omitted=dict(omitted))
+
+    def are_shared(self, lines, owned, n):
+        """Returns whether lines (l, 2) among n nodes are edges of triangles of two fractures. `owned` is [(owner, triangles)]."""
+        first, other = {}, set()
+        wanted = set((np.sort(lines, axis=1) @ [n, 1]).tolist())
+        for owner, triangles in owned:
+            if self.plan.is_fracture(owner):
+                for code in wanted.intersection(np.unique(np.sort(triangles[:, SIDES], axis=2) @ [n, 1]).tolist()):
+                    if first.setdefault(code, owner) != owner:
+                        other.add(code)
+        return np.array([code in other for code in (np.sort(lines, axis=1) @ [n, 1]).tolist()], bool)
 
 
 def foremost(plan, owners):
@@ -200,8 +302,9 @@ def set_sizes(sizes, origin, folder):
         sizes.grid.write(path, origin)
         structured = field.add("Structured")
         field.setString(structured, "FileName", path)
-        field.setNumber(structured, "TextFormat", 1)
+        field.setNumber(structured, "TextFormat", 0)
         field.setAsBackgroundMesh(structured)
+        gmsh.option.setNumber("Mesh.LcIntegrationPrecision", PRECISION)
     for option, value in (("MeshSizeMax", sizes.network.size), ("MeshSizeExtendFromBoundary", 0), ("MeshSizeFromPoints", 0)):
         gmsh.option.setNumber(f"Mesh.{option}", value)
 

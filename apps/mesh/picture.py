@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from shapes import NetworkError
 
-sys.path.append(str(Path(__file__).parents[1] / "plot"))
+sys.path.insert(1, str(Path(__file__).parents[1] / "plot"))
 import orientations  # noqa: E402
 from style import FAINT, INK, LINES, plt, save  # noqa: E402
 

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 from arrange import Graph, arrange, near_pairs, on_segment
 from join_lines import joined
+from journal import distance
 from joined_graph import JoinedGraph
 from shapely.geometry import LineString, Point
 from shapely.ops import polygonize
 from shapes import Errors, NetworkError, Plane, Unusable, check_line, check_polygon, refuse, thinned, unusable
 from surfaces import Surface, angle_of_planes, are_close, are_level, check_angles, moved_onto, overlap, traces, without
+
+MAX_MOVED = {"join": 2.0, "drop": 1.0}  # largest movement of points of fractures by repairs, in tolerances
 
 
 class Face:
@@ -30,7 +33,8 @@ class Plan:
 
     def __init__(self, network):
         self.network, self.dim = network, network.dim
-        self.repairs, self.surfaces = list(network.joined), None
+        self.repairs, self.surfaces, self.found_faces = list(network.joined), None, None
+        self.attempts = 1
         # In 3D a larger tolerance for edges would bend surfaces. Only corners move, within their planes.
         self.tolerance = network.tolerance if self.dim == 2 else min(network.tolerance, 1e-6 * network.domain.size)
         self.touching, joins = {}, network.repair == "join"  # {point where features touch: indices of owners}
@@ -86,6 +90,21 @@ class Plan:
                 begin, end = self.owners[min(of)].points
                 along = (end - begin) / np.linalg.norm(end - begin)
                 self.points[point, :2] = begin + (self.points[point, :2] - begin) @ along * along
+
+    def check_movements(self):
+        """Raises an error for each fracture with a point that joining moved by more than MAX_MOVED tolerances."""
+        points, journal, errors = {}, self.network.journal, Errors()
+        for point, of in self.graph.parents_at().items():
+            for k in of:
+                if self.is_fracture(k):
+                    points.setdefault(self.owners[k].name, []).append(point)
+        limit = MAX_MOVED[self.network.repair] * self.network.tolerance
+        for name, of in points.items():
+            moved = distance(self.points[of, :self.dim], journal.entries[name].points).max()
+            if moved > limit + journal.noise:
+                errors.lines.append(f"{name}: joining moves it by {moved:.3g} m, the limit is {limit:.3g} m")
+                errors.features.append((name,))
+        errors.throw()
 
     def part_overlaps(self):
         """Assigns an edge of several features to the first, if joining points at an angle made them overlap."""
@@ -232,9 +251,9 @@ class Plan:
         found = []
         for surface in surfaces:
             moved, reported = moved_onto(surface, others, self.network.tolerance)
-            for distance, other in reported:
-                if distance > 1e-9 * self.network.domain.size:
-                    self.repairs.append(f"closed a gap of {distance:.3g} m: {surface.feature.name} and {other.feature.name}")
+            for gap, other in reported:
+                if gap > 1e-9 * self.network.domain.size:
+                    self.repairs.append(f"closed a gap of {gap:.3g} m: {surface.feature.name} and {other.feature.name}")
             found.append(moved if reported else surface)
         return found
 
@@ -264,22 +283,29 @@ class Plan:
         return found
 
     def faces(self):
-        """Returns all faces, cut along edges. Checks that the faces cover each surface."""
+        """Returns all faces, cut along edges. Raises an error for each surface that its faces do not cover."""
+        if self.found_faces is None:
+            self.found_faces = self.cut_faces()
+        return self.found_faces
+
+    def cut_faces(self):
         if self.dim == 2:
             return faces_of(0, self.points[:, :2], list(self.edges), self.touching, self.network.domain.shape, self.tolerance)
         edges = [[] for _ in self.surfaces]
         for edge, of in self.edges.items():
             for k in of:
                 edges[k].append(edge)
-        found = []
+        found, errors = [], Errors()
         for k, surface in enumerate(self.surfaces):
             touching = [p for p, of in self.touching.items() if k in of]
             faces = faces_of(k, surface.plane.inside(self.points), edges[k], touching, surface.shape, self.tolerance)
             area = sum(face.shape.area for face in faces)
             if abs(area - surface.shape.area) > 4 * self.tolerance * surface.shape.length:
-                refuse(surface.feature, f"its faces have {area:.9g} m^2 of {surface.shape.area:.9g} m^2: its intersections could not be resolved; "
-                                        f"try another \"tolerance\"")
+                with errors.of_one():
+                    refuse(surface.feature, f"its faces have {area:.9g} m^2 of {surface.shape.area:.9g} m^2: its intersections could not be "
+                                            f"resolved; try another \"tolerance\"")
             found += faces
+        errors.throw()
         found = list({frozenset(face.rings[0]): face for face in reversed(found)}.values())[::-1]  # without duplicates
         return self.without_overlaps(found) if self.network.repair == "join" else found
 

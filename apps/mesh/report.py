@@ -71,7 +71,7 @@ def of_mesh(mesh, plan, sizes):
             "expected cells": float(sizes.expected_number()), "intersections": n_intersections(mesh, plan), "volume": float(volume.sum()),
             "gamma": {"min": float(quality.min()), "percentile 1": float(np.percentile(quality, 1)), "median": float(np.median(quality)),
                       "worst at": [float(x) for x in worst]},
-            "tolerance": plan.network.tolerance, "files": plan.network.journal.lines(plan.dim), "sets": of_sets(mesh, plan, sizes), "repairs": plan.repairs}
+            "attempts": plan.attempts, "generations of cells": mesh.generations, "tolerance": plan.network.tolerance, "files": plan.network.journal.lines(plan.dim), "sets": of_sets(mesh, plan, sizes), "repairs": plan.repairs}
 
 
 def as_text(report):

@@ -12,8 +12,9 @@ from size_grid import CELL, SizeGrid
 
 TIP_RATIO = {2: 1 / 20, 3: 1 / 2}  # default size at tips / size at the fracture
 REPAIRED_TIP_RATIO = {2: 1 / 2, 3: 1}  # of repaired networks
-REPAIRED_GAP = {2: 1, 3: 2}  # size in gaps / width of the gap, of repaired networks
-MIN_RATIO = {2: 1 / 20, 3: 1 / 8}  # smallest size in narrow gaps / size at the fractures
+# In gaps: size / width of the gap, and smallest size / size at the fractures.
+GAP = {2: (1, 1 / 20), 3: (1, 1 / 8)}
+REPAIRED_GAP = {2: (1, 1 / 20), 3: (3, 1 / 2)}  # of repaired networks; their mesh is refined further where cells are poor
 
 
 class Sizes:
@@ -150,8 +151,7 @@ class Sizes:
         i, j = i[apart], j[apart]
         wanted = np.minimum(self.at_edge[i], self.at_edge[j])
         _, _, gap = closest(self.segments[i], self.segments[j])
-        minimum = MIN_RATIO[self.plan.dim]
-        factor = 1 if self.network.repair == "report" else REPAIRED_GAP[self.plan.dim]
+        factor, minimum = self.in_gaps()
         for k in np.flatnonzero(factor * gap < wanted):
             for one, other in ((i[k], j[k]), (j[k], i[k])):
                 begin, end = self.segments[one]
@@ -162,21 +162,24 @@ class Sizes:
                 if near.any():
                     self.add(x[near], np.maximum(factor * distance[near], minimum * wanted[k]))
         if self.plan.dim == 3:
-            self.take_gaps_of_surfaces(minimum, factor)
+            self.take_gaps_of_surfaces()
 
-    def take_gaps_of_surfaces(self, minimum, factor):
-        at = self.plan.graph.parents_at()
+    def in_gaps(self):
+        """Returns size / width of a gap, and the smallest size in a gap / size at the fractures."""
+        return (GAP if self.network.repair == "report" else REPAIRED_GAP)[self.plan.dim]
+
+    def take_gaps_of_surfaces(self):
+        at, points, (factor, minimum) = self.plan.graph.parents_at(), self.plan.points, self.in_gaps()
         for k, surface in enumerate(self.plan.surfaces):
             size = min(self.of_owner[k], self.network.size)
-            points = self.plan.points
             near = np.flatnonzero(np.all((points > surface.low - size) & (points < surface.high + size), axis=1))
-            height = surface.plane.height(points[near])
-            flat = surface.plane.inside(points[near])
-            over = (factor * abs(height) < size) & in_polygon(flat, np.array(surface.shape.exterior.coords[:-1]))
-            over &= np.array([k not in at[p] | self.plan.touching.get(int(p), set()) for p in near], bool)
-            if over.any():
-                for x in (points[near[over]], surface.plane.outside(flat[over])):
-                    self.add(x, np.maximum(factor * abs(height[over]), minimum * size))
+            near = near[factor * abs(surface.plane.height(points[near])) < size]
+            near = near[in_polygon(surface.plane.inside(points[near]), np.array(surface.shape.exterior.coords[:-1]))]
+            near = np.array([p for p in near.tolist() if k not in at[p] | self.plan.touching.get(p, set())], int)
+            if len(near):
+                wanted = np.maximum(factor * abs(surface.plane.height(points[near])), minimum * size)
+                for x in (points[near], surface.plane.outside(surface.plane.inside(points[near]))):
+                    self.add(x, wanted)
 
 
 def special(plan):

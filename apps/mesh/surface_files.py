@@ -3,7 +3,8 @@ import re
 
 import numpy as np
 from shapes import NetworkError
-from tables import Row, Table, numbers, read_lines
+from tables import Row, Table, numbers
+from text_file import read_lines
 
 
 def read_dfnworks(path):

@@ -2,16 +2,16 @@
 import csv
 import difflib
 import math
-import os
 import re
-import stat
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from shapes import MAXIMUM, Errors, NetworkError, ellipse
+from text_file import read_lines
+from titles import DEGREES, NUMBER, plain, standard
 
 DECIMAL_COMMA = re.compile(r"^(\s*[-+]?\d*),(\d+(?:[eE][-+]?\d+)?\s*)$")
-MAX_CHARACTERS = 2 * 10**8  # in a file; some million fractures
+MISSING = ("", "-", "na", "n/a", "null", "none")  # words for missing numbers, also nan
 SEPARATORS = {";": "semicolons", "\t": "tabs", None: "blanks between numbers"}  # other than commas
 
 
@@ -30,11 +30,17 @@ class Table:
     fractures: list = field(default_factory=list)  # of type Row
     box: tuple = None  # lowest and highest corner of the domain, if given
     errors: list = field(default_factory=list)
+    empty: list = field(default_factory=list)  # errors of rows without geometry, also in `errors`
     corners: int = 32  # of the polygon of an ellipse
 
     def add(self, place, points, number=""):
         number = number or str(len(self.fractures) + 1)
         self.fractures.append(Row(f"{number} ({place})", points, number))
+
+    def lack(self, error):
+        """Records the error of a row without geometry, which repairs leave out."""
+        self.errors.append(error)
+        self.empty.append(error)
 
 
 def numbers(words, place, table, columns):
@@ -44,10 +50,11 @@ def numbers(words, place, table, columns):
         try:
             found.append(number(word))
         except ValueError:
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is not a number")
+            add = table.lack if word.strip().lower() in MISSING else table.errors.append
+            add(f"{place}: \"{word.strip()}\" in column {k} is not a number")
             return None
         if not math.isfinite(found[-1]):
-            table.errors.append(f"{place}: \"{word.strip()}\" in column {k} is not a finite number")
+            table.lack(f"{place}: \"{word.strip()}\" in column {k} is not a finite number")
             return None
         if abs(found[-1]) > MAXIMUM:
             table.errors.append(f"{place}: \"{word.strip()}\" in column {k} exceeds {MAXIMUM:g}, the largest allowed value")
@@ -66,23 +73,6 @@ def is_number(word):
     except ValueError:
         return False
     return True
-
-
-def read_lines(path):
-    """Returns the lines of a file. Rejects pipes and devices, which may have no end."""
-    def refuse(why):
-        raise NetworkError(f"{path}: cannot be read: {why}", [path]) from None
-    try:
-        mode = os.stat(path).st_mode
-        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # open() reports folders
-            refuse("is not a regular file, but a pipe, a socket or a device")
-        with open(path, encoding="utf-8-sig") as file:
-            text = file.read(MAX_CHARACTERS + 1)
-    except (OSError, UnicodeDecodeError) as error:
-        refuse(getattr(error, "strerror", None) or "is not UTF-8 text")
-    if len(text) > MAX_CHARACTERS:
-        refuse(f"has more than {MAX_CHARACTERS:g} characters; divide it into several sets, or remove fractures")
-    return text.splitlines()
 
 
 def columns(line, separator=","):
@@ -120,7 +110,6 @@ def other_separator(line, words):
 
 SHAPE = {"points": ["x", "y"], "lines": ["x0", "y0", "x1", "y1"], "polygons": ["x0", "y0", "z0", "x1", "y1", "z1", "x2", "y2", "z2"],
          "ellipses": ["cx", "cy", "cz", "r1", "r2", "rake", "strike", "dip"]}  # titles of columns
-NUMBER = ("id", "fid", "number")  # titles of the number of a fracture, by priority
 UNITS = {"rake": "deg", "strike": "deg", "dip": "deg"}  # other columns: m
 SPELLINGS = {"m": ("", "m", "meter", "meters", "metre", "metres"), "deg": ("", "deg", "degree", "degrees", "°")}
 GOES_ON = "..."  # last title of polygons with any number of corners
@@ -131,12 +120,13 @@ class Columns:
 
     shape  columns of the geometry, in the order of SHAPE
     number column of the number
+    signs  factors of the numbers of the geometry
     named  other columns (column, title, unit)
     count  number of columns; None for any number, with further corners"""
 
     def __init__(self, kind, dim=2):
         """Columns of a table without titles. Points have `dim` coordinates."""
-        self.kind, self.dim, self.titles, self.named = kind, dim, [], []
+        self.kind, self.dim, self.titles, self.named, self.signs = kind, dim, [], [], 1.0
         self.number = 0 if kind in ("lines", "points") else None
         self.shape = {"points": range(1, 1 + dim), "lines": range(1, 5), "polygons": range(0), "ellipses": range(8)}[kind]
         self.count = {"points": 1 + dim, "lines": 5, "polygons": None, "ellipses": 8}[kind]
@@ -162,14 +152,15 @@ class TitledColumns(Columns):
         super().__init__(kind, dim)
         self.path, self.line = path, line
         parted = [parted_title(word) for word in words]
-        if kind == "points":
-            parted = [(re.sub(r"(?i)^(?:pt|point)_(?=[xyz]$)", "", title), unit) for title, unit in parted]
-        self.titles, units = [title.lower() for title, _ in parted], [unit for _, unit in parted]
+        self.titles, units = standard(kind, [title.lower() for title, _ in parted]), [unit for _, unit in parted]
         self.refuse_doubled()
+        self.refuse_degrees()
         self.count, self.read = len(words), ",".join(words)
         if kind == "polygons" and self.titles[-1:] == [GOES_ON]:
             self.count = None
             self.titles.pop()
+        if kind == "points" and dim == 3 and "z" not in self.titles and "depth" in self.titles:
+            self.titles[self.titles.index("depth")], self.signs = "z", np.array([1.0, 1.0, -1.0])
         shape = self.shape_titles()
         self.shape = [self.titles.index(title) for title in shape]
         for title, k in zip(shape, self.shape):
@@ -178,7 +169,9 @@ class TitledColumns(Columns):
         self.named = [(k, "name" if title == "name" else parted[k][0], units[k])
                       for k, title in enumerate(self.titles) if title and title not in (*shape, *NUMBER)]
         if kind == "points":
-            self.named = [one for one in self.named if one[1].lower() != "z"]
+            self.named = [one for one in self.named if self.titles[one[0]] not in ("z", "depth")]
+            if self.number is None and "name" in self.titles:
+                self.number = self.titles.index("name")
             if self.number is None:
                 self.refuse(f"the titles of points lack one of {', '.join(NUMBER)}: points with the same number form a line")
         self.refuse_misspelt(entries)
@@ -192,6 +185,13 @@ class TitledColumns(Columns):
             meant = difflib.get_close_matches(title, entries, 1, 0.85)
             if meant and title not in entries:
                 self.refuse(f"column {k + 1} has the title \"{title}\", which is no entry of a joint; did you mean \"{meant[0]}\"?")
+
+    def refuse_degrees(self):
+        """Rejects longitudes and latitudes."""
+        k = next((k for k, title in enumerate(self.titles) if plain(title) in DEGREES), None)
+        if k is not None and not {"x", "x0", "x1", "cx"} & set(self.titles):
+            self.refuse(f"column {k + 1} has the title \"{self.titles[k]}\", which means degrees, and Sprekk needs metres; export the "
+                        "coordinates in a projected system such as UTM")
 
     def refuse_doubled(self):
         for k, title in enumerate(self.titles):
@@ -265,7 +265,18 @@ def points_row(x, place, table, number):
 ROWS = {"points": points_row, "lines": lines_row, "polygons": polygons_row, "ellipses": ellipses_row}
 
 
-def wrong_columns(words, columns, of, table):
+def wrong_columns(words, columns, of, table, place):
+    """Returns whether the number of columns of a row is wrong, and records the error."""
+    error = error_of_columns(words, columns, of, table)
+    k = columns.missing(words) if columns.titles and columns.kind != "polygons" and not error else None
+    if error:
+        table.errors.append(f"{place}: {error}")
+    elif k is not None:
+        table.lack(f"{place}: has no number in column {k + 1}, \"{columns.titles[k]}\"")
+    return bool(error) or k is not None
+
+
+def error_of_columns(words, columns, of, table):
     """Returns the error in the number of columns of a row, or None."""
     kind, n = columns.kind, len(words)
     if columns.titles and columns.count is not None and n > columns.count:
@@ -274,10 +285,7 @@ def wrong_columns(words, columns, of, table):
         is_box = len(of) == 6 and not table.fractures and table.box is None
         if not is_box and (len(of) % 3 or len(of) < 9):
             return f"has {len(of)} columns, needs 3 for each of at least 3 corners: x0,y0,z0,x1,y1,z1,..."
-    elif columns.titles:
-        k = columns.missing(words)
-        return None if k is None else f"has no number in column {k + 1}, \"{columns.titles[k]}\""
-    elif n != columns.count:
+    elif not columns.titles and n != columns.count:
         of_kind = list("xyz"[:columns.dim]) if kind == "points" else SHAPE[kind]
         needed = ",".join((["id"] if kind in ("lines", "points") else []) + of_kind)
         return f"has {n} columns, needs {columns.count}: {needed}"
@@ -290,14 +298,12 @@ def read_row(words, columns, place, table):
     if columns.kind == "polygons":
         while of and not columns.text(words, of[-1]):  # polygon with fewer corners
             of.pop()
-    wrong = wrong_columns(words, columns, of, table)
-    if wrong:
-        table.errors.append(f"{place}: {wrong}")
+    if wrong_columns(words, columns, of, table, place):
         return
     x, before = numbers([words[k] for k in of], place, table, [k + 1 for k in of]), len(table.fractures)
     if x is None:
         return
-    ROWS[columns.kind](x, place, table, columns.text(words, columns.number))
+    ROWS[columns.kind](x * columns.signs if columns.kind == "points" else x, place, table, columns.text(words, columns.number))
     for fracture in table.fractures[before:]:
         has = columns.properties(words)
         fracture.name = has.pop("name", "")
@@ -357,8 +363,9 @@ def joined_points(table, dim):
     for number, rows in of_number.items():
         points = np.concatenate([row.points for row in rows])
         if len(points) < dim:
-            table.errors.append(f"fracture {rows[0].title}: has {len(points)} points, needs at least {dim}")
-        table.fractures.append(replace(rows[0], points=points))
+            table.lack(f"fracture {rows[0].title}: has {len(points)} points, needs at least {dim}")
+        else:
+            table.fractures.append(replace(rows[0], points=points))
     return table
 
 
@@ -367,7 +374,7 @@ def has_points(path, dim):
     _, words = next(rows_of(path), (0, []))
     if not are_titles(words):
         return len(words) == 1 + dim
-    titles = {re.sub("^(?:pt|point)_", "", parted_title(word)[0].lower()) for word in words}
+    titles = set(standard("points", [parted_title(word)[0].lower() for word in words]))
     others = {"dip", "strike", "radius", "r1"}  # titles of discs
     return {"x", "y"} <= titles and not titles & others
 
@@ -387,16 +394,20 @@ def kind_of(path):
     return "lines" if (titles & {"x0", "z0"} == {"x0"} if titles else len(words) == 5) else "polygons"
 
 
-def complete(table, path):
-    """Returns the table. Raises the errors, or an error for a table without fractures."""
-    if not table.errors and not table.fractures:
-        table.errors.append(f"{path}: has no fracture")
-    Errors(table.errors).throw([path])
+def complete(table, path, leaves_out=False):
+    """Returns the table. Raises the errors, or an error for a table without fractures.
+
+    With `leaves_out` rows without geometry are no errors."""
+    ignored = set(table.empty if leaves_out else ())
+    errors = [one for one in table.errors if one not in ignored]
+    if not errors and not table.fractures:
+        errors.append(f"{path}: has no fracture")
+    Errors(errors).throw([path])
     return table
 
 
-def read_table(path, kind, dim=2, entries=(), corners=32):
-    """Returns the fractures in a file. `entries` as for read_csv().
+def read_table(path, kind, dim=2, entries=(), corners=32, leaves_out=False):
+    """Returns the fractures in a file. `entries` as for read_csv(), `leaves_out` as for complete().
 
     All errors are raised together. With kind = None the columns determine the kind."""
-    return complete(read_csv(path, kind or kind_of(path), dim, entries, corners), path)
+    return complete(read_csv(path, kind or kind_of(path), dim, entries, corners), path, leaves_out)

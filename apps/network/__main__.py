@@ -10,7 +10,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "mesh"))
+sys.path.insert(1, str(Path(__file__).resolve().parents[1] / "mesh"))
 
 import files  # noqa: E402
 import realised  # noqa: E402

@@ -13,14 +13,19 @@ folder. A directory gives these pictures, if the run contains the data:
   error.png        estimated error of one step
   loops.png        mean traction against mean jump of each fracture
   series.png       slip, opening, pressures and injected volume over time
-  events.png       magnitudes of slip events over time and injection rate
+  events.png       magnitudes of slip events over time, and the rate of injection of wells
   magnitudes.png   moment magnitudes of many slipping fractures, in 3D
+  catalogue.png    number of events above a magnitude, of a catalogue by slip rates
   probe_NAME.png   each probe
+  profiles_NAME.png  slip along the line of a probe with the slip rate
+  phase_NAME.png   friction over the slip rate, of a probe with the slip rate at a point
   convergence.png  iterations and residuals of all steps
 
 and, for fractures, the tables fractures_long.csv and fractures_wide.csv."""
 import argparse
 import io
+import math
+import re
 import sys
 from pathlib import Path
 
@@ -33,7 +38,8 @@ def arguments(words):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("paths", nargs="+", metavar="PATH", help="CSV of a point, or directory of a run")
     parser.add_argument("--output", type=Path, metavar="DIR", help="write the pictures there")
-    parser.add_argument("--time", type=float, metavar="T", help="draw the step written nearest to T (default: the last)")
+    parser.add_argument("--time", metavar="T", help="draw the step written nearest to T, a number in the \"time unit\" of "
+                        "the scene or with a unit, such as \"5 h\" (default: the last step)")
     parser.add_argument("--warp", type=float, metavar="FACTOR", help="factor on the displacement (default: a visible one)")
     parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: 150)")
     parser.add_argument("--whole", action="store_true", help="show the whole body: no cut, no zoom")
@@ -54,6 +60,21 @@ def of_csv(path):
     yield path.stem, loops.of_point(columns, tangential, path.stem)
 
 
+def seconds(text, clock):
+    """Returns a time in s. A number without unit is in the unit of the clock, as in style.when."""
+    from style import PREFIXES
+    units = {name: factor for factor, name in PREFIXES["s"]} | {"year": 365.25 * 86400}
+    words = re.fullmatch(r"\s*(\S*?)\s*([a-z]*)\s*", text)
+    try:
+        value = float(words[1])
+        factor = units[words[2]] if words[2] else (clock or (1,))[0]
+    except (TypeError, ValueError, KeyError):
+        raise PlotError(f'--time: is "{text}", expected a number, or a number and one of {", ".join(units)}') from None
+    if not math.isfinite(value):
+        raise PlotError(f'--time: is "{text}", must be finite')
+    return value * factor
+
+
 def of_run(directory, options):
     """Yields (name, figure) of each picture with data in the run."""
     import bulk
@@ -67,6 +88,7 @@ def of_run(directory, options):
     import maps
     import mohr
     import overview
+    import rates
     import series
     from style import when
     content, scene = read.results(directory), read.scene(directory)
@@ -79,8 +101,9 @@ def of_run(directory, options):
 
     sizes = 0, 0  # reference values, m and Pa, for round-off
     bulk_steps, fracture_steps = (read.written_steps(directory, kind) for kind in ("bulk", "fractures"))
+    wanted = None if options.time is None else seconds(options.time, clock)
     if bulk_steps:
-        wanted = bulk_steps[-1][0] if options.time is None else options.time
+        wanted = bulk_steps[-1][0] if wanted is None else wanted
         time, file = min(bulk_steps, key=lambda step: abs(step[0] - wanted))
         title = f"{name}, {when(time, clock)}"
         rock, joints = read.grid(file), None
@@ -119,10 +142,13 @@ def of_run(directory, options):
             left_out("loops.png", directory, "it contains one step, a loop requires two")
     start = float(scene.get("Time", {}).get("start", 0))
     dim = content.get("mesh", {}).get("dimension", 3)
+    found = events.of_run(directory, content)
     made = [("series", series.of_run(states, singles, name, clock, start, dim)),
-            ("events", magnitudes.over_time(events.of_run(directory, content), steps, name, clock, start, dim)),
+            ("events", magnitudes.over_time(found, steps, name, clock, start, dim)),
+            ("catalogue", magnitudes.of_events(found, name)),
             ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
     made += [(f"probe_{path.stem}", series.of_probe(path)) for path in sorted((directory / "probes").glob("*.csv"))]
+    made += [found for path in sorted((directory / "probes").glob("*.csv")) for found in rates.of_probe(path)]
     yield from ((picture, figure) for picture, figure in made if figure)
     yield "convergence", convergence.of_run(steps, name)
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import read
 
-# Times in s, slip in m (change of the mean slip), moments in N m; in 2D moments per depth, in N.
-Event = namedtuple("Event", "fracture start end slip moment magnitude cumulated")
+# Times in s, slip in m (change of the mean slip), moments in N m; in 2D moments per depth, in N. Of a catalogue by slip
+# rates also the number of the event and the stress drop in Pa; otherwise None.
+Event = namedtuple("Event", "fracture start end slip moment magnitude cumulated number drop", defaults=(None, None))
 
 
 def states(steps, key="moment"):
@@ -33,7 +34,9 @@ def of_run(directory, content):
     path = Path(directory) / "events.csv"
     rows = read.csv_rows(path)[1:] if path.is_file() else []
     try:
-        events = [Event(row[0], *map(float, row[1:])) for row in rows]
+        titles = read.csv_rows(path)[0] if rows else []
+        more = [titles.index(title) for title in ("event [-]", "stress_drop [Pa]") if title in titles]
+        events = [Event(row[0], *map(float, row[1:7]), *(float(row[k]) for k in more)) for row in rows]
     except (TypeError, ValueError):
         raise read.PlotError(f"{path}: is not a table of events; run the scene again") from None
     second = content.get("time_unit", {"seconds": 1})["seconds"]

@@ -1,9 +1,10 @@
 """Pictures of traction against jump: of a point, and of means over the fractures of a run."""
 import numpy as np
 from read import PlotError, entries
-from style import (FAINT, LINES, MAX_CURVES, Quantity, STATES, STATE_COLOURS, foremost, give_room, look, natural, plt,
+from style import (FAINT, LINES, Quantity, STATES, STATE_COLOURS, foremost, give_room, look, natural, plt,
                    without_noise)
 
+MAX_SHOWN = 8  # fractures with colours
 SHOW_STATES = 400  # largest number of steps with marked states
 
 
@@ -82,7 +83,8 @@ def starts_unloaded(scene):
     """Returns whether jumps and tractions vanish in the initial state; `scene` as in read.scene."""
     pressure = scene.get("Flow", {}).get("initial pressure", "0")
     given = (value for name in ("initial stress", "plastic jump") for value in entries(scene, name))
-    return "lithostatic stress" not in scene.get("Bulk", {}) and pressure == "0" and not any(given)
+    stressed = {"lithostatic stress", "in-situ stress"} & set(scene.get("Bulk", {}))
+    return not stressed and pressure == "0" and not any(given)
 
 
 def of_fractures(steps, names, title, length=0, stress=0, unloaded=False):
@@ -108,7 +110,7 @@ def of_fractures(steps, names, title, length=0, stress=0, unloaded=False):
         dilations[name] = shears[name][0], normals[name][0]
 
     names = sorted(names, key=natural)
-    shown = [names[k] for k in foremost([np.max(np.abs(shears[name][0])) for name in names], MAX_CURVES)]
+    shown = [names[k] for k in foremost([np.max(np.abs(shears[name][0])) for name in names], MAX_SHOWN)]
     figure, axes = plt.subplots(1, 3, figsize=(9.6 if len(names) == 1 else 11, max(3.3, 0.17 * len(shown) + 0.8)))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     kinds = (("tangential jump", "shear traction", "Pa"), ("normal jump", "normal traction", "Pa"), ("tangential jump", "normal jump", "m"))

@@ -28,14 +28,23 @@ def complete(magnitudes):
 
 def of_step(step, title):
     """Returns the figure of the single fractures of a step, or None for too few magnitudes."""
-    found = step.get("single_fractures", {}).get("moment_magnitude", [])
-    magnitudes = np.sort([value for value in found if value is not None])
+    return of_magnitudes(step.get("single_fractures", {}).get("moment_magnitude", []), title, "fractures")
+
+
+def of_events(events, title):
+    """Returns the figure of the events of a catalogue by slip rates, or None for too few magnitudes."""
+    return of_magnitudes([event.magnitude for event in events if event.number is not None], title, "events")
+
+
+def of_magnitudes(found, title, what):
+    """Returns the figure of the number of fractures or events above a magnitude, or None for too few magnitudes."""
+    magnitudes = np.sort([value for value in found if value is not None and np.isfinite(value)])
     if len(magnitudes) < FEWEST:
         return None
     figure, ax = plt.subplots(figsize=(5.2, 3.6))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     count = np.arange(len(magnitudes), 0, -1)
-    ax.semilogy(magnitudes, count, "o", markersize=3, color=LINES[0], label=f"{len(magnitudes)} fractures")
+    ax.semilogy(magnitudes, count, "o", markersize=3, color=LINES[0], label=f"{len(magnitudes)} {what}")
     minimum = complete(magnitudes)
     above = magnitudes >= minimum
     if above.sum() >= FEWEST_OF_SLOPE and magnitudes[-1] > minimum:
@@ -47,7 +56,7 @@ def of_step(step, title):
             linestyle=STYLES[1],
             label=f"b = {b:.2f} ± {error:.2f} for magnitudes of at least {minimum:.1f}",
         )
-    ax.set(xlabel="moment magnitude (-)", ylabel="fractures with at least this magnitude (-)")
+    ax.set(xlabel="moment magnitude (-)", ylabel=f"{what} with at least this magnitude (-)")
     ax.legend()
     return figure
 
@@ -95,9 +104,9 @@ def write_names(ax, events, ends):
 
 
 def over_time(events, steps, title, wanted=None, start=0.0, dim=3):
-    """Returns the figure of magnitudes over the injection rate, with the cumulated moment; None without events.
+    """Returns the figure of magnitudes over time and the cumulated moment; None without events.
 
-    A line is the duration of an event, a dot its end. `wanted` is the unit of time as in series.clock."""
+    The injection rate, if any, is behind the magnitudes. A line is the duration of an event, a dot its end. `wanted` is the unit of time as in series.clock."""
     if not events:
         return None
     steps = states(steps)

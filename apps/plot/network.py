@@ -15,7 +15,7 @@ WALLS = 0.2  # opacity of faces of the rock inside of its box: slopes and excava
 class Network:
     """Fractures in space, with the values of their faces in `data`.
 
-    The box is the rock, or the region with slip if it is much smaller. Faces outside of it are left out."""
+    The box is the rock, or the region with slip if it is much smaller. Faces are cut at its sides."""
 
     def __init__(self, rock, joints, names, singles=(), whole=False, wells=()):
         faces, skin = read.surface(joints), space.outer(read.surface(rock))
@@ -24,7 +24,7 @@ class Network:
         centres = np.array([faces.points[polygon].mean(axis=0) for polygon in faces.polygons])
         part = None if whole else region(centres, data["slip"], body)
         self.bounds, self.zoomed = (body, False) if part is None else (part, True)
-        self.surface = faces.part(np.flatnonzero(space.inside(centres, self.bounds))) if self.zoomed else faces
+        self.surface = space.clipped(faces, self.bounds) if self.zoomed else faces
         self.data = self.surface.cell_data
         single = singles and "single fracture" in data
         self.numbers = self.data["single fracture" if single else "fracture"].astype(int)
@@ -39,7 +39,7 @@ class Network:
         centres = np.array([skin.points[polygon].mean(axis=0) for polygon in skin.polygons])
         away = np.min(np.abs(centres[:, None] - body), axis=(1, 2)) > 1e-6 * np.max(body[1] - body[0])
         walls = skin.part(np.flatnonzero(away & space.inside(centres, self.bounds)))
-        rims = space.Part(faces.points, list(bulk.rim(self.surface, None)), INK)
+        rims = space.Part(self.surface.points, list(bulk.rim(self.surface, None)), INK)
         self.others = [edges, rims, space.Part(walls.points, walls.polygons, FAINT, WALLS)]
         self.wells = {name: well for name, well in dict(wells).items() if np.all(space.inside(well, self.bounds))}
         self.places = space.visible(self.surface, self.numbers, self.bounds)

@@ -35,10 +35,11 @@ def range_of_change(values):
 
 
 def of_step(rock, joints, scene, title):
-    """Of the grids of the rock and of the fractures; None without flow, or if the change of pressure is not known."""
+    """Of the grids of the rock and of the fractures; None without flow in rock and fractures, or if the change of pressure
+    is not known."""
     surface, faces = read.surface(rock), read.segments(joints)
     initial = scene.get("Flow", {}).get("initial pressure")
-    if initial is None or "hydraulic aperture" not in faces.cell_data:
+    if initial is None or "hydraulic aperture" not in faces.cell_data or flow.FLUID.drive not in surface.cell_data:
         return None
     for _, (in_rock, _, _, label), (inside, *_) in flow.change(surface, faces, flow.FLUID, initial):
         lines = [corners[:2, :2] for corners in faces.corners()]

@@ -3,7 +3,7 @@ import re
 
 import numpy as np
 from read import PlotError, csv_rows
-from style import FAINT, PREFIXES, Quantity, foremost, look, natural, plt, unit, when
+from style import FAINT, NOISE, PREFIXES, Quantity, foremost, look, natural, plt, unit, when
 
 MAX_LINES = 6  # with colours in one panel
 
@@ -50,15 +50,24 @@ def panels(steps, singles, start=0.0, dim=3):
             yield "temperature in wells", "K", of_wells("temperature")
 
 
-def draw(ax, times, label, base, curves):
-    """Draws the curves with the largest changes in colour, the others thin."""
+def change(values):
+    return np.nanmax(values) - np.nanmin(values)
+
+
+def draw(ax, times, label, base, curves, looks):
+    """Draws the curves with the largest changes in colour, the others thin. `looks` {name: look} of former panels."""
     quantity = Quantity(label, base, *curves.values()) if base else None
     names = list(curves)
-    shown = foremost([np.nanmax(values) - np.nanmin(values) for values in curves.values()], MAX_LINES)
+    changes = [change(values) for values in curves.values()]
+    shown = foremost(changes, MAX_LINES)
+    if len(names) > MAX_LINES:
+        shown = [k for k in shown if changes[k] > NOISE * max(changes)]
+    for k in shown:
+        looks.setdefault(names[k], len(looks))
     for k, name in enumerate(names):
         values = quantity(curves[name]) if quantity else curves[name]
         if k in shown:
-            ax.plot(times, values, markersize=3 if len(times) <= 60 else 0, label=name, **look(shown.index(k)))
+            ax.plot(times, values, markersize=3 if len(times) <= 60 else 0, label=name, **look(looks[name]))
         else:
             ax.plot(times, values, color=FAINT, linewidth=0.5, zorder=1)
     if len(names) > len(shown):
@@ -72,8 +81,9 @@ def figure_of(title, times, name, content):
     """Returns the figure with a panel for each entry of the content and a common time axis."""
     figure, axes = plt.subplots(len(content), 1, sharex=True, squeeze=False, figsize=(7.4, 0.6 + 2.1 * len(content)))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
+    looks = {}  # a name has one look in all panels
     for ax, (label, base, curves) in zip(axes.flat, content):
-        draw(ax, times, label, base, curves)
+        draw(ax, times, label, base, curves, looks)
     axes[-1, 0].set_xlabel(f"time ({name})")
     figure.align_ylabels()
     return figure
@@ -82,11 +92,11 @@ def figure_of(title, times, name, content):
 def of_run(steps, singles, title, wanted=None, start=0.0, dim=3):
     """Returns the figure of at least two steps, or None without data."""
     content = list(panels(steps, singles, start, dim)) if len(steps) > 1 else []
-    content = [
-        (label, base, curves)
-        for label, base, curves in content
-        if any(np.nanmax(abs(v), initial=0) > 0 for v in curves.values())
-    ]
+    def largest(curves):
+        return max((np.nanmax(abs(v), initial=0) for v in curves.values()), default=0)
+
+    length = max((largest(curves) for _, base, curves in content if base == "m"), default=0)
+    content = [one for one in content if largest(one[2]) > (NOISE * length if one[1] == "m" else 0)]
     if not content:
         return None
     times, name = clock([step["time"] for step in steps], wanted)

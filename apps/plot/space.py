@@ -222,6 +222,29 @@ def inside(points, bounds):
     return np.all((points >= bounds[0]) & (points <= bounds[1]), axis=1)
 
 
+def clipped(surface, bounds):
+    """Returns the part of a surface inside of a box. Polygons across its sides are cut; values of points are left out."""
+    from vtkmodules.vtkCommonDataModel import vtkPlane
+    from vtkmodules.vtkFiltersCore import vtkClipPolyData
+
+    data = polygons_of(surface.points, surface.polygons)
+    number = numpy_to_vtk(np.arange(len(surface.polygons), dtype=np.int64), deep=True)
+    number.SetName("number")
+    data.GetCellData().AddArray(number)
+    for k in range(3):
+        for origin, sign in ((bounds[0], 1), (bounds[1], -1)):
+            plane, clip = vtkPlane(), vtkClipPolyData()
+            plane.SetOrigin(*origin)
+            plane.SetNormal(*(sign * np.eye(3)[k]))
+            clip.SetInputData(data)
+            clip.SetClipFunction(plane)
+            clip.Update()
+            data = clip.GetOutput()
+    of = read.arrays(data.GetCellData())["number"]
+    values = {name: values[of] for name, values in surface.cell_data.items()}
+    return read.Surface(vtk_to_numpy(data.GetPoints().GetData()), read.cells(data.GetPolys()), values, {})
+
+
 def bounds_of(points):
     """Returns the box of points, (low, high). A plane body has a thin box."""
     low, high = points.min(axis=0), points.max(axis=0)

@@ -123,12 +123,12 @@ py::array_t<Real> view_of(Model& model, const std::string& name) {
     fields::BlockVector unknowns;
   };
   auto* owner = new Owner{model.field(name), model.state()};
-  const py::capsule held(owner, [](void* p) {
+  const py::capsule keeper(owner, [](void* p) {
     const Alone alone;
     delete static_cast<Owner*>(p);
   });
   const auto& values = owner->field.values;
-  return py::array_t<Real>({values.extent(0), values.extent(1)}, values.data(), held);
+  return py::array_t<Real>({values.extent(0), values.extent(1)}, values.data(), keeper);
 }
 
 py::array_t<Real> values_of(OutputField& output) {
@@ -446,12 +446,26 @@ void bind_model(py::module_& m) {
           "blocks", [](ModelHandle& self) { return blocks_of(*self); }, one_at_a_time)
       .def(
           "residual_at",
-          [](ModelHandle& self, const py::list& x, Real t, Real dt) {
-            const auto found = residual_at(*self, x, t, dt);
+          [](ModelHandle& self, const py::list& x, Real t, Real dt, bool raw) {
+            const auto found = residual_at(*self, x, t, dt, raw);
             self.check(false);
             return found;
           },
+          py::arg("x"), py::arg("t"), py::arg("dt"), py::arg("raw") = false, one_at_a_time)
+      .def(
+          "linearise", [](ModelHandle& self, Real dt) { linearise(*self, dt); }, one_at_a_time)
+      .def(
+          "response_to", [](ModelHandle& self, const py::list& b, Real to) { return response_to(*self, b, to); },
           one_at_a_time)
+      .def(
+          "error_energies", [](ModelHandle& self, const py::list& z) { return error_energies(*self, z); },
+          one_at_a_time)
+      .def(
+          "product_with", [](ModelHandle& self, const py::list& x) { return product_with(*self, x); }, one_at_a_time)
+      .def(
+          "prescribed", [](ModelHandle& self) { return prescribed_in(*self); }, one_at_a_time)
+      .def(
+          "boundary", [](ModelHandle& self) { return boundary_of(self->mesh()); }, one_at_a_time)
       .def(
           "jacobian_errors",
           [](ModelHandle& self, const py::list& x, Real t, Real dt) {
@@ -462,12 +476,12 @@ void bind_model(py::module_& m) {
           one_at_a_time)
       .def(
           "jacobian_at",
-          [](ModelHandle& self, const py::list& x, Real t, Real dt) {
-            const auto found = jacobian_at(*self, x, t, dt);
+          [](ModelHandle& self, const py::list& x, Real t, Real dt, bool raw) {
+            const auto found = jacobian_at(*self, x, t, dt, raw);
             self.check(false);
             return found;
           },
-          one_at_a_time);
+          py::arg("x"), py::arg("t"), py::arg("dt"), py::arg("raw") = false, one_at_a_time);
   bind_runs(m);
 }
 

@@ -324,15 +324,15 @@ class OwnModule final : public assembly::Module,
 
 model::ModuleFactory own_modules(const py::object& modules, MeshOf mesh_of, const Failure& failure) {
   if (modules.is_none() || py::len(modules) == 0) return {};
-  const auto held = std::shared_ptr<py::object>(new py::object(modules), [](py::object* object) {
+  const auto kept = std::shared_ptr<py::object>(new py::object(modules), [](py::object* object) {
     const py::gil_scoped_acquire lock;
     delete object;
   });
-  return [held, mesh_of, failure](const mesh::Mesh& mesh) {
+  return [kept, mesh_of, failure](const mesh::Mesh& mesh) {
     std::vector<std::unique_ptr<assembly::Module>> made;
     in_python("own modules", [&] {
       const py::object arrays = py::module_::import("sprekk.mesh").attr("Mesh")(mesh_of(mesh));
-      for (const auto& module : *held)
+      for (const auto& module : *kept)
         made.push_back(std::make_unique<OwnModule>(py::reinterpret_borrow<py::object>(module), arrays, failure));
     });
     return made;

@@ -224,6 +224,13 @@ void bind_scene(py::module_& m) {
           one_at_a_time)
       .def(
           "times", [](const SceneHandle& self) { return self.scene().time.times(); }, one_at_a_time)
+      .def(
+          "outline",
+          [](const SceneHandle& self) {
+            const auto mesh = self.scene().read_mesh();
+            return py::make_tuple(mesh.dim(), mesh.boundary_names);
+          },
+          one_at_a_time)
       .def_property_readonly("origin", &SceneHandle::origin)
       .def_property_readonly("folder", &SceneHandle::folder);
 

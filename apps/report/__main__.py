@@ -33,11 +33,11 @@ def progress(words):
         print(f"\r\033[K{words}", end="", file=sys.stderr, flush=True)
 
 
-def pictures(directory, dpi):
+def pictures(directory, dpi, time):
     """Returns (name, PNG) of each picture of `sprekk plot`, (file name, text) of each table, and its messages."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
-            [sys.executable, "-B", str(ROOT / "apps" / "plot"), str(directory), "--output", folder, "--dpi", str(dpi)],
+            [sys.executable, "-B", ROOT / "apps" / "plot", directory, "--output", folder, "--dpi", str(dpi), f"--time={time} s"],
             capture_output=True,
             text=True,
             stdin=subprocess.DEVNULL,
@@ -70,12 +70,16 @@ def report(options):
     dim = content.get("mesh", {}).get("dimension", 3)
     entries = scene.Scene(directory, ROOT / "docs/use/reference.md", dim)
     viewer = options.viewer.read_text() if options.viewer and options.viewer.is_file() else None
+    written = [time for time, _ in read.written_steps(directory, "bulk")]
+    time = figures.time_of_pictures(content, written)
     with ThreadPoolExecutor() as pool:  # the pictures are drawn by another process
-        drawing = pool.submit(pictures, directory, options.dpi)
+        drawing = pool.submit(pictures, directory, options.dpi, time)
         found = events.of_run(directory, content)
         shown = view.of_run(directory, content, entries.entries, found, progress) if viewer else None
         progress("pictures")
-        drawn, tables, left_out = drawing.result()
+        drawn, tables, said = drawing.result()
+        if written and time != written[-1]:
+            said = f"Pictures show the step with the largest slipping area; no face slips in the last one. {said}"
     html = page.of_run(
         directory.resolve().name,
         content,
@@ -84,7 +88,7 @@ def report(options):
         figures.of_run(content, entries.reference, found),
         tables,
         drawn,
-        left_out,
+        said,
         shown,
         viewer,
     )

@@ -139,7 +139,7 @@ def estimates(step):
 
 def accuracy(content):
     """Yields the final lines of error control."""
-    asked = content.get("accuracy", {"quantities": {}})
-    for one in asked["quantities"].values():
-        words = one["line"] + ("" if one["reached"] else f": not reached, for {asked['ended']}")
+    requested = content.get("accuracy", {"quantities": {}})
+    for one in requested["quantities"].values():
+        words = one["line"] + ("" if one["reached"] else f": not reached, for {requested['ended']}")
         yield Check("accuracy", "passed" if one["reached"] else "failed", words)

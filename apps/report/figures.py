@@ -23,6 +23,7 @@ OF_FRACTURES = [
     ("moment", "moment", "N m"),
     ("moment_magnitude", "moment magnitude", ""),
 ]
+CHANGES = ("max_slip", "first_slip", "fraction_has_slipped", "fraction_open")  # fractures without them have no row
 OF_PLANE = {"area": ("length", "m"), "moment": ("moment per depth", "N")}  # titles and units in 2D
 
 
@@ -56,7 +57,8 @@ def singles(content, step, found):
 def of_fractures(fractures, dim):
     """Yields the table of fractures, sorted by slip."""
     names = sorted(fractures, key=lambda name: -(fractures[name].get("max_slip") or 0))
-    shown = names[:MAX_ROWS]
+    changed = [name for name in names if any(fractures[name].get(key) for key in CHANGES)]
+    shown = (changed or names)[:MAX_ROWS]
     columns = [("fracture", shown)]
     for key, title, base in OF_FRACTURES:
         if any(fractures[name].get(key) is not None for name in shown):
@@ -64,7 +66,8 @@ def of_fractures(fractures, dim):
             columns.append(column(title, [fractures[name].get(key) for name in shown], base))
     if not shown or len(columns) == 1:
         return
-    note = f"{len(names) - len(shown)} others with less slip" if len(names) > len(shown) else ""
+    others = len(names) - len(shown)
+    note = f"{others} others {'with less slip' if len(changed) != len(shown) else 'without slip or opening'}" if others else ""
     yield Table("Fractures", [title for title, _ in columns], list(zip(*(values for _, values in columns))), note)
 
 
@@ -149,19 +152,38 @@ def of_events(found, dim):
     columns = [("fracture", [event.fracture for event in shown])] + [
         column(title, [getattr(event, key) for event in shown], base)
         for key, title, base in (
+            ("magnitude", "magnitude" + (" per metre of depth" if dim == 2 else ""), ""),
             ("start", "start", "s"),
             ("end", "end", "s"),
             ("slip", "mean slip", "m"),
             ("moment", *moment),
-            ("magnitude", "magnitude" + (" per metre of depth" if dim == 2 else ""), ""),
+            ("drop", "stress drop", "Pa"),
         )
+        if getattr(shown[0], key) is not None
     ]
     others = f"{len(found) - len(shown)} smaller ones are in events.csv" if len(found) > len(shown) else ""
     yield Table("Slip events", [title for title, _ in columns], list(zip(*(values for _, values in columns))), others)
 
 
+def of_points(content, step):
+    """Yields the tables of quantities at points of fractures."""
+    names = [one["name"] for one in content.get("single_fractures", [])]
+    for name, units in content.get("tables", {}).items():
+        values = step.get(name, {})
+        shown = range(min(MAX_ROWS, len(values.get("fracture", []))))
+        if not shown:
+            continue
+        columns = [("fracture", [names[values["fracture"][k]] for k in shown])]
+        for key, unit in units.items():
+            base = "" if unit == "-" else unit.replace("Pa*m^0.5", "Pa √m")
+            columns.append(column(key.replace("_of_", " of "), [values[key][k] for k in shown], base))
+        n_others = len(values["fracture"]) - len(shown)
+        title, note = name.replace("_", " ").capitalize(), f"{n_others} others are in {name}.csv" if n_others else ""
+        yield Table(title, [head for head, _ in columns], list(zip(*(texts for _, texts in columns))), note)
+
+
 def of_run(content, reference, found):
-    """Returns the tables of results and the tables of costs. `reference`: units of entries, scene.Reference. `found` are
+    """Returns the tables of results, and the tables of joints and costs. `reference`: units of entries, scene.Reference. `found` are
     the slip events of the run."""
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
@@ -169,8 +191,22 @@ def of_run(content, reference, found):
     tables = [
         *of_fractures(fractures, dim),
         *of_events(found, dim),
-        *of_joints(content, reference),
+        *of_points(content, last),
         *of_wells(last, dim),
         *of_boundaries(last),
     ]
-    return tables, list(of_costs(content))
+    return tables, [*of_joints(content, reference), *of_costs(content)]
+
+
+def time_of_pictures(content, written):
+    """Returns the time of the last step with pictures, or of the one with the largest slipping area if no face slips there.
+
+    `written`: times of the steps with files; without them the last step."""
+    shown = [step for step in content["steps"] if step["time"] in written] or content["steps"][-1:]
+    areas = [one["area"] for one in content.get("single_fractures", [])]
+    slipping = [
+        sum(area * (share or 0) for area, share in zip(areas, step.get("single_fractures", {}).get("fraction_slip", ())))
+        for step in shown
+    ]
+    k = len(slipping) - 1 if slipping[-1] > 0 or not any(slipping) else int(np.argmax(slipping))
+    return shown[k]["time"]

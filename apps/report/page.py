@@ -19,6 +19,7 @@ CAPTIONS = {
     "mohr": "Stress on fracture faces, compared with the strength of the joints",
     "series": "Over time",
     "events": "Magnitudes of slip events over the injection rate, and cumulated moment",
+    "catalogue": "Number of events with at least a given magnitude",
     "magnitudes": "Number of fractures with at least a given magnitude",
     "convergence": "Iterations of each step, and residuals at its end",
 }
@@ -147,7 +148,7 @@ def of_run(name, results, scene, checks, tables, files, drawn, left_out, view, v
             + (f"<p class='note'>{text(left_out)}</p>" if left_out else ""),
         ),
         ("convergence", "Convergence", "".join(figure(*one) for one in convergence)),
-        ("costs", "Size and time", "".join(map(table, costs))),
+        ("costs", "Joints, size and time", "".join(map(table, costs))),
     ]
     links = "".join(f"<a href='#{key}'>{title}</a>" for key, title, _ in parts)
     body = "".join(f"<section id='{key}'><h2>{title}</h2>{inner}</section>" for key, title, inner in parts)

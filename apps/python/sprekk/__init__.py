@@ -18,6 +18,7 @@ from .network import traces
 from .point import PointFailed, drive, fit
 from .results import Results
 from .scene import Scene
+from . import upscale
 from .sensitivity import sensitivities
 from .study import sweep
 

@@ -12,6 +12,7 @@ class Results:
     steps      pandas.DataFrame with the numbers of each step: time, newton_iterations, cuts, ...
     fractures  pandas.DataFrame with the index (time, fracture set); vectors have a column for each component
     single_fractures  the same for single fractures; .unstack("fracture") has one row for each step
+    points()   stress intensity factors as a pandas.DataFrame
     content    results.json as a dict"""
 
     def __init__(self, folder):
@@ -38,6 +39,16 @@ class Results:
         names = [one["name"] for one in self.content.get("single_fractures", [])]
         return table({(step["time"], name): {key: values[k] for key, values in step["single_fractures"].items()}
                       for step in self.content["steps"] for k, name in enumerate(names)})
+
+    def points(self, name="stress_intensity"):
+        """Returns the table of quantities at points of fractures: the columns of stress_intensity.csv, times in s."""
+        import pandas
+        names = [one["name"] for one in self.content.get("single_fractures", [])]
+        steps = [pandas.DataFrame(step[name]).assign(time=step["time"]) for step in self.content["steps"] if name in step]
+        if not steps:
+            raise _sprekk.Error(f"{self.folder}: results.json contains no \"{name}\"; no fracture requests it")
+        found = pandas.concat(steps, ignore_index=True)
+        return found.assign(fracture=[names[k] for k in found["fracture"]])
 
     def probe(self, name):
         """Returns the data of a probe, an xarray.Dataset with units and dimensions."""
