@@ -45,7 +45,7 @@ class Case:
 class Row:
     kind: str             # uniform or adaptive
     order: int
-    asked: float          # relative request of adaptive runs
+    requested: float          # relative request of adaptive runs
     cells: int
     seconds: float
     value: float
@@ -133,34 +133,34 @@ def entries(source, folder):
     return (f"Mesh file.path={source(folder)}",) if callable(source) else tuple(source)
 
 
-def unasked(scene, folder):
+def without_request(scene, folder):
     """Returns the scene, or a copy without its section Accuracy."""
     tree = ElementTree.parse(scene)
-    asked = tree.getroot().find("ParameterList[@name='Accuracy']")
-    if asked is None:
+    requested = tree.getroot().find("ParameterList[@name='Accuracy']")
+    if requested is None:
         return scene
-    tree.getroot().remove(asked)
+    tree.getroot().remove(requested)
     folder.mkdir(parents=True, exist_ok=True)
     tree.write(folder / scene.name)
     return folder / scene.name
 
 
-def start(options, case, order, source, asked, label, others=()):
-    """Runs a case and returns its results; without `asked` on the given mesh. Raises Failed if the run fails."""
+def start(options, case, order, source, requested, label, others=()):
+    """Runs a case and returns its results; without `requested` on the given mesh. Raises Failed if the run fails."""
     directory = options.output / re.sub(r"\W+", "_", case.name) / label
     mesh = entries(source, options.output / "meshes")
     section = "Mesh file" if mesh[0].startswith("Mesh file") else "Mesh"
     sets = ["Output.vtu=false", *case.sets, *mesh, f"{section}.order={order}", *others]
-    if asked:
+    if requested:
         goal = "Accuracy.quantities.goal"
-        sets += [f"{goal}.quantity={case.quantity}", f"{goal}.relative={asked:g}", f"Accuracy.seconds={case.seconds or options.seconds:g}"]
+        sets += [f"{goal}.quantity={case.quantity}", f"{goal}.relative={requested:g}", f"Accuracy.seconds={case.seconds or options.seconds:g}"]
         if case.quantity == "reaction":
             sets += [f"{goal}.{entry}={word}" for entry, word in zip(("boundary", "component"), case.fractures.split())]
         elif case.quantity in ("flow", "temperature"):
             sets.append("{}.{}={}".format(goal, *case.fractures.split()))
         elif case.fractures:
             sets.append(f"{goal}.fractures={{{case.fractures}}}")
-    scene = unasked(scenes.path(case.scene, options.output / "scenes"), options.output / "meshes")
+    scene = without_request(scenes.path(case.scene, options.output / "scenes"), options.output / "meshes")
     return program.succeeded(options.binary, scene, directory, sets, options.ranks, clock=TIME_LIMIT).results
 
 
@@ -190,12 +190,12 @@ def uniform(options, case, order, k, source, steps):
     return Row("uniform", order, math.nan, results["mesh"]["cells"], seconds, value_of(case, results))
 
 
-def adaptive(options, case, order, asked, label=None):
-    results = start(options, case, order, case.coarse, asked, label or f"adaptive_{order}_{asked:g}")
+def adaptive(options, case, order, requested, label=None):
+    results = start(options, case, order, case.coarse, requested, label or f"adaptive_{order}_{requested:g}")
     accuracy = results["accuracy"]
     goal, last = accuracy["quantities"]["goal"], accuracy["meshes"][-1]
     estimate = math.inf if goal["error"] is None else goal["error"] / abs(goal["value"])
-    return Row("adaptive", order, asked, last["cells"], last["seconds"], goal["value"], estimate, goal["reached"]), len(results["steps"])
+    return Row("adaptive", order, requested, last["cells"], last["seconds"], goal["value"], estimate, goal["reached"]), len(results["steps"])
 
 
 def seconds_at(rows, error):
@@ -221,7 +221,7 @@ def seconds_at(rows, error):
 def measure(options, case):
     """Runs a case; uniform runs have the time steps of the most accurate adaptive run."""
     requests = case.requests[:2] if options.quick else case.requests
-    runs = [adaptive(options, case, order, asked) for order in case.orders for asked in requests]
+    runs = [adaptive(options, case, order, requested) for order in case.orders for requested in requests]
     reference, steps = reference_of(options, case, runs[-1][1])
     plain = {1: case.uniform, 2: case.uniform[:-1] if case.uniform_2 is None else case.uniform_2}
     rows = [uniform(options, case, order, k, source, steps) for order, sources in plain.items()
@@ -246,10 +246,10 @@ def reference_of(options, case, steps):
 
 def show(case, rows):
     print(f"\n{case.name}: {case.quantity}{' of ' + case.fractures if case.fractures else ''}")
-    print(f"{'':10}{'order':>6}{'asked':>9}{'cells':>9}{'seconds':>9}{'true':>11}{'estimate':>11}{'est./true':>11}{'speed-up':>10}")
+    print(f"{'':10}{'order':>6}{'requested':>9}{'cells':>9}{'seconds':>9}{'true':>11}{'estimate':>11}{'est./true':>11}{'speed-up':>10}")
     plain = [row for row in rows if row.kind == "uniform"]
     for row in rows:
-        words = f"{row.kind:10}{row.order:>6}{'' if math.isnan(row.asked) else format(row.asked, 'g'):>9}{row.cells:>9}{row.seconds:>9.2f}{row.error:>11.2e}"
+        words = f"{row.kind:10}{row.order:>6}{'' if math.isnan(row.requested) else format(row.requested, 'g'):>9}{row.cells:>9}{row.seconds:>9.2f}{row.error:>11.2e}"
         if row.kind == "adaptive":
             words += f"{row.estimate:>11.2e}{row.estimate / row.error:>11.2f}{seconds_at(plain, row.error) / row.seconds:>10.1f}"
             words += "" if row.reached else "   not reached, it says"
@@ -300,12 +300,12 @@ def main(words):
     table.write(options.output / "accuracy.csv", ["case", *vars(measured[0][1][0])],
                 [[case.name, *vars(row).values()] for case, rows in measured for row in rows])
     draw(measured, options.output / "accuracy.png")
-    asked = [(case, row, rows) for case, rows in measured for row in rows if row.kind == "adaptive"]
-    reached = [row for _, row, _ in asked if row.reached and row.error <= OVERSHOOT * row.asked]
-    ratios = [row.estimate / row.error for _, row, _ in asked if row.error > 0]
-    speed = [max((seconds_at([r for r in rows if r.kind == "uniform"], row.error) / row.seconds for row in rows if row.asked == 0.01), default=math.nan)
+    requested = [(case, row, rows) for case, rows in measured for row in rows if row.kind == "adaptive"]
+    reached = [row for _, row, _ in requested if row.reached and row.error <= OVERSHOOT * row.requested]
+    ratios = [row.estimate / row.error for _, row, _ in requested if row.error > 0]
+    speed = [max((seconds_at([r for r in rows if r.kind == "uniform"], row.error) / row.seconds for row in rows if row.requested == 0.01), default=math.nan)
              for _, rows in measured]
     speed = [one for one in speed if not math.isnan(one)] or [math.nan]
-    print(f"\nrequested={len(asked)} reached={len(reached)} worst_overshoot={max(row.error / row.asked for _, row, _ in asked):.2f} "
+    print(f"\nrequested={len(requested)} reached={len(reached)} worst_overshoot={max(row.error / row.requested for _, row, _ in requested):.2f} "
           f"effectivity={min(ratios):.2f}..{max(ratios):.2f} speedup_1pc={min(speed):.1f}")
-    return 1 if failures or (options.quick and len(reached) < len(asked)) else 0
+    return 1 if failures or (options.quick and len(reached) < len(requested)) else 0

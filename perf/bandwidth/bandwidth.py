@@ -12,7 +12,7 @@ from perf.krylov.krylov import STATES
 STATE = "mixed"
 EDGE, QUICK = 30, 18  # cells along an edge: 111 and 29 thousand unknowns
 CELLS = {"tetrahedra": "tetrahedron", "hexahedra": "hexahedron"}
-COLUMNS = {"part": "", "count": "d", "ms": ".4g", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "asked": ""}
+COLUMNS = {"part": "", "count": "d", "ms": ".4g", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "required": ""}
 ASKED = {  # targets of the last line: at least (+), at most (-)
     "spmv_share": (+1, 0.6), "assembly_spmv": (-1, 20), "assemblies": (-1, 1), "solve_reused_spmv": (-1, 300), "solve_first_spmv": (-1, 450),
     "newton_spmv": (-1, 350), "contact_share": (-1, 0.05)}
@@ -61,7 +61,7 @@ class Measured:
         return {"triad": self.triad / 1e9, "assemblies": self.phases["assembly of the linear part"]["count"], **spmv, **shares}
 
 
-def asked(key):
+def required(key):
     if key not in ASKED:
         return ""
     sign, bound = ASKED[key]
@@ -88,7 +88,7 @@ def draw(measured, file):
             times = seconds / one.spmv
             ax.annotate(f"{times:.1f}" if times < 100 else f"{times:,.0f}", (times, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7)
             if key in ASKED and key.endswith("_spmv"):
-                ax.plot(2 * [ASKED[key][1]], [i - 0.45, i + 0.45], color=style.INK, linewidth=1.2, label="asked" if k == 0 and key == "assembly_spmv" else None)
+                ax.plot(2 * [ASKED[key][1]], [i - 0.45, i + 0.45], color=style.INK, linewidth=1.2, label="required" if k == 0 and key == "assembly_spmv" else None)
     ax.set_yticks(range(len(names)), names)
     ax.invert_yaxis()
     ax.set(xscale="log", xlabel="products of the displacement matrix with a vector (-)")
@@ -111,7 +111,7 @@ def main(words):
     for cells in chosen:
         measured[cells] = one = run(options, cells, edge)
         for name, count, seconds, of_triad, of_time, key in one.parts():
-            printed.add([f"{cells}: {name}", count, 1e3 * seconds, seconds / one.spmv, of_triad, of_time, asked(key)])
+            printed.add([f"{cells}: {name}", count, 1e3 * seconds, seconds / one.spmv, of_triad, of_time, required(key)])
     draw(measured, options.output / "bandwidth.png")
     worst = {key: (min if key == "triad" or ASKED[key][0] > 0 else max)(one.summary()[key] for one in measured.values()) for key in ("triad", *ASKED)}
     table.finish(options, printed, worst, {key: FORMATS.get(key, ".0f") for key in worst}, ASKED)

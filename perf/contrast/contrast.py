@@ -133,7 +133,7 @@ def draw(rows, file):
         failed = [(run.maximum, h) for (_, run), h in zip(of, height) if run.failure]
         if failed:
             ax.plot(*zip(*failed), "x", color=style.INK, markersize=6, label=f"{cell}: failed")
-    ax.axvline(BOUNDS["max_krylov"], color=style.FAINT, linestyle=":", label="asked, of those above the line")
+    ax.axvline(BOUNDS["max_krylov"], color=style.FAINT, linestyle=":", label="required above the line")
     n_asked = sum(not beyond for beyond, _ in names)
     if 0 < n_asked < len(names):
         ax.axhline(len(names) - n_asked + 0.5, color=style.INK, linewidth=0.8)

@@ -16,7 +16,7 @@ MESHES = {  # shape: scene, cells along an edge for about 1e4, 1e5 and 1e6 cells
     "tetrahedra": ("flow_3d", "tetrahedron", (12, 24, 54)), "hexahedra": ("flow_3d", "hexahedron", (24, 48, 102))}
 NETWORKS = {"traces": "flow_traces", "discs": "flow_discs"}  # meshes of gmsh with flat cells
 STEADY = ("Time.maximum halvings=0",)  # shorter steps have no effect
-BOUNDS = {"krylov_max": 15, "krylov_growth": 0.3, "failures": 0, "exponent": 1.1}
+BOUNDS = {"krylov_max": 30, "krylov_growth": 0.3, "failures": 0, "exponent": 1.1}
 FORMATS = {"krylov_max": ".4g", "krylov_growth": ".2f", "exponent": ".2f"}
 COLUMNS = {"cells, case": "", "cells": "d", "unknowns": "d", "solves": "d", "first": "d", "iterations": "d", "residual": ".0e",
            "set-up s": ".2f", "assembly s": ".2f", "solve s": ".2f", "kB/cell": ".1f"}

@@ -33,6 +33,7 @@ def main(words):
     parser.add_argument("--files", action="store_true", help="mesh files of discs and traces instead, with repairs")
     parser.add_argument("--binary", type=common.absolute, default=common.ROOT / "build/apps/sprekk/sprekk",
                         help="the program that reads the scenes of --files")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="number added to the seeds of --files (0)")
     options = parser.parse_args(words)
     if options.files:
         return files.main(options)

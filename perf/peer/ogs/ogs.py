@@ -114,24 +114,32 @@ def made(case, words):
 
 
 def limit(values):
-    """Limit of values on meshes with halved cells: of the observed order from three meshes (Aitken), of order 2 from
-    two."""
+    """Limit of values on meshes with halved cells, of the observed order; the order is at least 1 and at most 2."""
     *_, middle, last = values
-    earlier = values[-3] if len(values) > 2 else middle - 4 * (last - middle)
-    return last - (last - middle)**2 / (last - 2 * middle + earlier)
+    change = last - middle
+    earlier = middle - values[-3] if len(values) > 2 and middle != values[-3] else 4 * change
+    ratio = min(max(change / earlier if earlier else 0, 0.25), 0.5)
+    return last + change * ratio / (1 - ratio)
 
 
 def reference(case, found):
     """{quantity: (reference, its relative uncertainty)}; found {code: [run]}.
 
-    For fault_ramp: mean and half the difference of the limits of both programs; else solutions of exact.py."""
+    For fault_ramp: mean of the limits of both programs; the uncertainty is half their difference, and at least the
+    smaller distance of a finest mesh from its limit. Else: solutions of exact.py."""
     if case == "cross":
         plate = cases.PLATE
         values = [exact.crack_area(plate["E"], plate["nu"], plate["load"], 0.01, 0.025, 0.05, plate["Kn"], terms)
                   for terms in (32, 40)]
     elif case == "fault_ramp":
-        ends = {name: [limit([run.values[name] for run in of]) for of in found.values()] for name in ("volume", "slip")}
-        return {name: (sum(of) / 2, abs(of[0] - of[1]) / sum(of)) for name, of in ends.items()}
+        known = {}
+        for name in ("volume", "slip"):
+            values = [[run.values[name] for run in of] for of in found.values()]
+            ends = [limit(of) for of in values]
+            mean = sum(ends) / 2
+            last = min(abs(end - of[-1]) for end, of in zip(ends, values))
+            known[name] = mean, max(abs(ends[0] - ends[1]) / 2, last) / abs(mean)
+        return known
     else:
         rock = cases.ROCK if case == "strip" else cases.TIGHT
         coarse, fine = (exact.strip_volume(n, **cases.BAR, **rock) for n in (400, 800))

@@ -1,0 +1,78 @@
+"""Explicit quasi-dynamic solution of a plane fault in an elastic half-plane y < 0 in plane strain, by the boundary
+integral method with constant slip in each cell. The cells and the loading are those of problem BP3-QD.
+
+An edge dislocation at w in the whole plane has the complex potentials (Muskhelishvili 1953)
+    phi_0 = A ln(z - w),  psi_0 = conj(A) ln(z - w) - A conj(w)/(z - w),  A = G b/(i pi (kappa + 1)),  kappa = 3 - 4 nu
+The free surface adds, with f*(z) = conj(f(conj z)),
+    phi_1 = -z phi_0*' - psi_0*,  psi_1 = -phi_0* - z phi_1'
+Stresses: sigma_xx + sigma_yy = 4 Re phi', sigma_yy - sigma_xx + 2 i sigma_xy = 2 (conj(z) phi'' + psi')."""
+import numpy as np
+
+from perf.earthquakes.reference import Friction
+
+DENSITY, SHEAR_SPEED, POISSON = 2670.0, 3464.0, 0.25
+SHEAR_MODULUS = DENSITY * SHEAR_SPEED**2
+COMPRESSION, PLATE_RATE = 50e6, 1e-9  # Pa, m/s
+WEAK, STRONG = 0.010, 0.025           # a above 15 km and below 18 km
+TURN, STRENGTHENING, LOCKED = 15e3, 18e3, 40e3  # m, down the fault
+
+
+def stress(z, w, b, modulus, nu, surface=True):
+    """Stresses (xx, yy, xy) at z of a dislocation at w with the Burgers vector b, a complex number. With b = 1 and in
+    the whole plane, sigma_xy = G/(2 pi (1 - nu) x) on the x-axis."""
+    A = modulus * b / (1j * np.pi * 4 * (1 - nu))
+    B, wc = np.conj(A), np.conj(w)
+    r = z - w
+    d_phi, dd_phi = A / r, -A / r**2
+    d_psi = B / r + A * wc / r**2
+    if surface:
+        q = z - wc  # phi_0*' = B/q, psi_0* = A ln q - B w/q
+        d_phi1 = -B / q + z * B / q**2 - A / q - B * w / q**2
+        dd_phi1 = B / q**2 + B / q**2 - 2 * z * B / q**3 + A / q**2 + 2 * B * w / q**3
+        d_phi, dd_phi, d_psi = d_phi + d_phi1, dd_phi + dd_phi1, d_psi - B / q - d_phi1 - z * dd_phi1
+    total, difference = 4 * d_phi.real, 2 * (np.conj(z) * dd_phi + d_psi)
+    return (total - difference.real) / 2, (total + difference.real) / 2, difference.imag / 2
+
+
+class Thrust:
+    """Fault that dips by `dip` and reaches the surface. `points` are the distances of the ends of its cells from the
+    surface; below, it slips at the plate rate. Unknowns: slip and psi of the cells."""
+
+    def __init__(self, friction, points, dip, modulus, nu, shear, N, rate):
+        self.friction, self.shear, self.N, self.rate = friction, shear, N, rate
+        down = -np.exp(1j * dip)  # direction down the dip
+        ends, centres = points * down, (points[1:] + points[:-1]) / 2 * down
+        up = np.exp(1j * dip)
+        normal = 1j * up
+        ends = np.where(points == 0, -1e-9j, ends)  # a dislocation at the surface has no stress
+        z, w = np.meshgrid(centres, ends, indexing="ij")
+        xx, yy, xy = stress(z, w, up, modulus, nu)
+        ux, uy, nx, ny = up.real, up.imag, normal.real, normal.imag
+        tau = xx * ux * nx + yy * uy * ny + xy * (ux * ny + uy * nx)
+        sigma = xx * nx * nx + yy * ny * ny + 2 * xy * nx * ny
+        # of reverse slip by 1 in a cell, tension positive; [cell, cell that slips]
+        self.of_shear, self.of_normal = (of[:, :-1] - of[:, 1:] for of in (tau, sigma))
+        self.n = n = len(centres)
+        self.start = np.concatenate([np.zeros(n), friction.state(shear, N, rate) + np.zeros(n)])
+        self.scale = np.concatenate([np.full(n, friction.L), np.full(n, friction.b)])
+
+    def slip_rate(self, t, y):
+        lag = y[:self.n] - self.rate * t
+        return self.friction.rate(self.shear + self.of_shear @ lag, self.N - self.of_normal @ lag, y[self.n:])
+
+    def __call__(self, t, y):
+        V = self.slip_rate(t, y)
+        return np.concatenate([V, self.friction.state_rate(V, y[self.n:])])
+
+
+def bp3(size=100.0, dip=np.pi / 3, growth=1.1):
+    """Problem BP3-QD, thrust, with cells of this size down to 18 km and growing ones below."""
+    points = np.linspace(0, STRENGTHENING, round(STRENGTHENING / size) + 1)
+    steps = size * growth ** np.arange(1, 1 + round(np.log(1 + (LOCKED - STRENGTHENING) / size * (growth - 1)) / np.log(growth)))
+    deep = STRENGTHENING + np.cumsum(steps) * (LOCKED - STRENGTHENING) / np.sum(steps)
+    points = np.concatenate([points, deep])
+    a = np.interp((points[1:] + points[:-1]) / 2, [TURN, STRENGTHENING], [WEAK, STRONG])
+    friction = Friction(a, b=0.015, L=0.008, damping=SHEAR_MODULUS / (2 * SHEAR_SPEED))
+    steady = Friction(STRONG, friction.b, friction.L, friction.damping)
+    shear = steady.strength(COMPRESSION, PLATE_RATE, steady.steady_state(PLATE_RATE))
+    return Thrust(friction, points, dip, SHEAR_MODULUS, POISSON, shear, COMPRESSION, PLATE_RATE)

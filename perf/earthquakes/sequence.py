@@ -1,0 +1,50 @@
+"""Sequences of earthquakes on a thrust fault that reaches the surface: problem BP3-QD of the code comparison of SCEC."""
+import time
+from functools import partial
+
+import numpy as np
+
+from perf.common import program
+from perf.earthquakes import half_plane, reference
+from perf.earthquakes.rate_state import crossings
+
+SCENE = "earthquakes/thrust_2d.xml"
+YEAR = 31557600.0  # s
+# of the code FDRA (Cattania), from its files for the benchmark: onsets of the first events, then a cycle of four events
+ONSETS = np.array([177.10, 277.34, 334.30, 421.26, 513.70, 611.10])  # years
+CYCLE = 63.3 + 87.1 + 91.1 + 97.4                                    # years
+
+
+def cases(options, row):
+    """Yields (name, function that returns a row)."""
+    if not options.quick:
+        yield "BP3-QD, thrust, 60 degrees", partial(thrust, options, row.of_run, "BP3-QD, thrust, 60 degrees")
+        yield "BP3-QD, explicit method", partial(explicit, row, "BP3-QD, explicit method")
+
+
+def thrust(options, row, name):
+    file = options.output / "meshes/thrust.msh"
+    program.mesh(options.binary, SCENE, file, ())
+    entries = (f"Mesh file.path={file}", *options.set)
+    run = program.succeeded(options.binary, SCENE, options.output / "thrust", entries)
+    times = np.array([step["time"] for step in run.steps])
+    rates = np.array([max(of["max_slip_rate"] for of in step["fractures"].values()) for step in run.steps])
+    return row(name, run, deviations(np.array(crossings(times, rates)) / YEAR))
+
+
+def explicit(row, name):
+    """The explicit method with cells of the same size."""
+    begin = time.monotonic()
+    found = reference.solve(half_plane.bp3(100.0), [1000 * YEAR], 1e-6, first_step=1e4)
+    return row(name, deviations(np.array(found.onsets) / YEAR), found.steps, found.rejected, time.monotonic() - begin)
+
+
+def deviations(onsets):
+    """Relative errors of the first onset and of the duration of the last four cycles, from the onsets in years. Without
+    four cycles, the error of the interval from the second event on."""
+    if len(onsets) >= 9:
+        period = (onsets[-1] - onsets[-5]) / CYCLE - 1
+    else:
+        n = min(len(onsets), len(ONSETS))
+        period = (onsets[n - 1] - onsets[1]) / (ONSETS[n - 1] - ONSETS[1]) - 1 if n > 2 else np.inf
+    return {"first event": onsets[0] / ONSETS[0] - 1 if len(onsets) else np.inf, "period": period}
