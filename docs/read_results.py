@@ -5,7 +5,7 @@
     read_results.py DIRECTORY FRACTURE   one fracture, or a single fracture of a set, in all steps
 
 Jumps (m) and tractions (Pa) are means over the fracture, in its frame: normal first, opening and tension positive.
-Reactions (N, in 2D per metre of thickness) are the forces that held boundaries in the last step, by coordinates.
+Reactions (N, in 2D per metre of thickness) are the forces of constrained boundaries in the last step, by coordinates.
 """
 import json
 import sys
