@@ -154,7 +154,15 @@ auto joint_faces(const Faces<mesh::dimension(shape)>& faces, int n) {
   return std::pair(face, x);
 }
 
-/// Adds the commit of all faces. The scale of differences is the history variable, at least 1e-4.
+/// True if the history variable k of a joint is an angle of a directional table; the table is stored last.
+bool is_angle(const laws::Joint& joint, int dim, int k) {
+  if (dim == 2 || laws::n_history(joint.damage) != laws::AnisotropicDamage::n_history) return false;
+  const int place = k - (joint.n_history(dim) - laws::DirectionFan::n_numbers);  // 0: number of angles
+  return place > 0 && (place - 1) % 5 == 0;
+}
+
+/// Adds the commit of all faces. The scale of differences is the history variable, at least 1e-4, or 1 for angles: a
+/// small angle is a difference of directions and has their absolute error.
 template <Shape shape>
 void add_commit(Report& report, const std::string& name, const Faces<mesh::dimension(shape)>& faces, int n) {
   using Face = device::Face<shape>;
@@ -164,11 +172,14 @@ void add_commit(Report& report, const std::string& name, const Faces<mesh::dimen
   Kokkos::parallel_for("commit", Kokkos::RangePolicy<Execution>(0, n), commit);
   const auto saved = host_of(commit.out);
   Case& result = report.cases[name];
-  for (int f = 0; f < n; ++f)
+  for (int f = 0; f < n; ++f) {
+    const auto& joint = faces.joints[static_cast<long>(f) * faces.joints.size() / n];
     for (int k = 0; k < n_saved; ++k) {
+      const Real least = is_angle(joint, Face::dim, k) ? 1 : 1e-4;
       result.value.push_back(saved(f, k));
-      result.scale.push_back(std::max(std::abs(saved(f, k)), 1e-4));
+      result.scale.push_back(std::max(std::abs(saved(f, k)), least));
     }
+  }
 }
 
 /// Prints the numbers of faces per contact state. Throws if a state is rare.
