@@ -43,6 +43,11 @@ def machine():
     return f"{field('/proc/cpuinfo', 'model name')}, {os.cpu_count()} cores, {memory} GiB, {version}"
 
 
+def load():
+    others = os.getloadavg()[0]
+    return "shared machine, " * (others >= 0.5) + f"{others:.1f} other processes at the start"
+
+
 def targets(name, file):
     """Targets that perf/NAME/FILE.py declares, by the name of the result."""
     module = importlib.import_module(f"perf.{name}.{file}")
@@ -90,7 +95,7 @@ def main(name, words):
               ("commit", commit()),
               ("machine", machine()),
               ("date", datetime.date.today().isoformat()),
-              ("load", f"{os.getloadavg()[0]:.1f} other processes at the start")]
+              ("load", load())]
     declared = targets(name, "scale" if "--scale" in rest else name)
     since = time.time() - 1
     status, results = run(name, rest, options.output)

@@ -29,7 +29,11 @@ REQUESTS = {"tilted": (0.3, 0.1, 0.03), "crack": (0.03, 0.01, 0.003, 0.0005)}
 GRADED = ((1.2, 0.04), (0.9, 0.02), (0.6, 0.01), (0.39, 0.01), (0.18, 0.01))
 FLOW = {"PorePy": (0.1, 0.05, 0.025, 0.0125), "Sprekk": (16, 32, 64, 128)}  # sizes of cells; cells along an edge
 SIDES = (("west", "east"), ("south", "north"), ("bottom", "top"))
-PARTS = ("contact", "heat", "flow", "damage", "ogs")
+# manufactured poroelasticity: series of perf/verification, dimension and grid of PorePy, sizes of cells
+PORO = (("quadrilateral", 2, "cartesian", {f"n={n}": 1 / n for n in (4, 8, 16, 32)}),
+        ("triangle gmsh", 2, "simplex", {f"h={h}": h for h in (0.25, 0.125, 0.0625, 0.03125)}),
+        ("hexahedron", 3, "cartesian", {f"n={n}": 1 / n for n in (4, 8, 12)}))
+PARTS = ("contact", "heat", "flow", "damage", "poro", "ogs")
 RATIOS = {"tilted": "ratio", "heat": "ratio_thm"}
 QUICK = 2  # number of meshes of each
 # 4, 11 thousand tetrahedra: the number made by gmsh depends on the machine
@@ -39,6 +43,8 @@ COSTS = {"cells": "d", "unknowns": "d", "Newton": "d", "CPU seconds": ".3f", "MB
 COLUMNS = {"mesh, code": "", **COSTS, **{name: ".4f" for name in FUNCTIONALS}}
 OF_HEAT = {"mesh, code": "", **COSTS, **{name: ".4g" for name in THERMAL}}
 ERRORS = {"error, code": "", **COSTS, "rel. error": ".2e"}
+EQUAL = {"at equal error": "", "PorePy error": ".2e", "Sprekk error": ".2e", "PorePy CPU s": ".3f", "Sprekk CPU s": ".3f", "ratio": ".0f"}
+OF_PORO = {"pressure": ".2e", "flow": ".2e", "u": ".2e", "force": ".2e"}
 WHY = """peer: no measurement: set POREPY to the folder of a checkout of PorePy, of November 2025 if possible:
   git clone https://github.com/pmgbergen/porepy && git -C porepy checkout 614c076c && POREPY=$PWD/porepy ./sprekk perf peer"""
 
@@ -46,7 +52,7 @@ WHY = """peer: no measurement: set POREPY to the folder of a checkout of PorePy,
 def theirs(options, script, *words):
     """Runs a script with PorePy; returns its JSON output and a function values -> Run."""
     theirs = ROOT / "perf/peer/theirs"
-    paths = [theirs / "compat", ROOT, f"{options.porepy}/src", *glob.glob("/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")]
+    paths = [theirs / "compat", ROOT, f"{options.porepy}/src", options.porepy, *glob.glob("/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")]
     one = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "PYTHONDONTWRITEBYTECODE")}
     environment = {**one, "PYTHONPATH": ":".join(map(str, paths)), "MPLBACKEND": "Agg", "PYTHONWARNINGS": "ignore",
                    "NUMBA_CACHE_DIR": str(options.output / "numba")}
@@ -179,14 +185,29 @@ def tell_apart(found):
     return wrong
 
 
+def compare_poro(options, count):
+    """Runs PorePy's manufactured poroelasticity and writes its errors, which bound those of perf/verification."""
+    printed = table.Table({"series, mesh": "", "cells": "d", "unknowns": "d", **OF_PORO, "seconds": ".2f"}, 26)
+    for series, dimension, grid, sizes in PORO:
+        for mesh, size in list(sizes.items())[:count]:
+            reported, run = theirs(options, "poro.py", dimension, grid, size)
+            run = run(reported["errors"])
+            printed.add([f"{series}, {mesh}", run.cells, run.unknowns, *(run.values[name] for name in OF_PORO), run.seconds])
+    table.write(options.output / "porepy_poro.csv", ["series", "mesh", *list(printed.columns)[1:]],
+                [[*row[0].split(", "), *row[1:]] for row in printed.rows])
+
+
 def tell_equal(found):
-    """Prints the times at equal error; returns the smallest ratio."""
-    printed, ratios = table.Table({"at equal error": "", "their error": ".2e", "our error": ".2e", "their CPU seconds": ".3f", "our CPU seconds": ".3f", "ratio": ".0f"}, 28), []
+    """Prints the times at equal error; returns the rows of the table, which end with the ratio, NaN if not reached."""
+    printed = table.Table(EQUAL, 28)
     for what, (their, our, error) in found.items():
         best, good = runs.at_equal_error(our, their, error)
-        ratios.append(runs.ratio(best, good))
-        printed.add([what, error(best), good and error(good), best.seconds, good and good.seconds, ratios[-1] if good else None])
-    return min(ratios, key=lambda ratio: ratio if ratio == ratio else -1)
+        printed.add([what, error(best), good and error(good), best.seconds, good and good.seconds, runs.ratio(best, good)])
+    return printed.rows
+
+
+def least_ratio(rows):
+    return min((row[-1] for row in rows), key=lambda ratio: ratio if ratio == ratio else -1)
 
 
 def draw(same, found, file):
@@ -205,11 +226,13 @@ def draw(same, found, file):
     figure.savefig(file, dpi=150)
 
 
-def write(file, both, found):
+def write(options, both, found, equal):
     rows = [[case, code, *cells(run), name, value] for case, same in both.items() for code, of in same.items() for run in of
             for name, value in run.values.items()]
     rows += [[what, run.code, *cells(run), "relative error", error(run)] for what, (their, our, error) in found.items() for run in their + our]
-    table.write(file, ["case", "code", "cells", "unknowns", "Newton", "CPU seconds", "MB", "quantity", "value"], rows)
+    table.write(options.output / "peer.csv", ["case", "code", "cells", "unknowns", "Newton", "CPU seconds", "MB", "quantity", "value"], rows)
+    if equal:
+        table.write(options.output / "peer_equal.csv", ["quantity", *list(EQUAL)[1:]], equal)
 
 
 def warm_up(options):
@@ -249,7 +272,7 @@ def main(words):
     parts = available(options)
     if not parts:
         return 0
-    same, found, total, wrong = {}, {}, {}, []
+    same, found, equal, total, wrong = {}, {}, [], {}, []
     if "ogs" in parts:
         total |= ogs.compare(options)
     if parts != ["ogs"]:
@@ -269,21 +292,25 @@ def main(words):
         print()
         found, adaptive, exact = compare_errors(options, same["tilted"], meshes_of(options, FINE))
         print(f"\nmean slip without error: {exact:.4e}\n")
-        total["ratio_equal_error"] = tell_equal(found)
+        equal = tell_equal(found)
+        total["ratio_equal_error"] = least_ratio(equal)
         print("\nwith adaptive meshes")
-        total["ratio_adaptive"] = tell_equal(adaptive)
+        total["ratio_adaptive"] = least_ratio(tell_equal(adaptive))
         draw(same["tilted"], found, options.output / "peer.png")
     if "flow" in parts:
         print("\nmean pressure of the regular network")
         flow = compare_flow(options, meshes_of(options, FLOW["Sprekk"]))
         print()
-        tell_equal(flow)
+        equal = [*equal, *tell_equal(flow)]
         found |= flow
     if "damage" in parts:
         print("\ndamage at a point: the largest differences over the largest values, and seconds of an iteration of PorePy")
         wrong += damage.compare(options, theirs)
-    if parts != ["ogs"]:
-        write(options.output / "peer.csv", same, found)
+    if "poro" in parts:
+        print("\nmanufactured poroelasticity: errors of PorePy")
+        compare_poro(options, meshes_of(options, PORO[0][-1]))
+    if same or found:
+        write(options, same, found, equal)
     missed = [f"missed: {name} = {total.get(name, float('nan')):.3g}, required: {asked}" for name, asked in ASKED.items()
               if not total.get(name, 0) >= asked and (name in total or not (options.only or name in ogs.ASKED))]
     print("\n".join(["", *wrong, *([] if options.quick else missed), f"tables and pictures in {options.output}"]))
