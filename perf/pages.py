@@ -13,7 +13,8 @@ A table is the result of an SQL query (SQLite) in a comment:
 
 Each file NAME.csv is a table NAME. The table NAME_results contains the results and targets in its header, with the
 columns [case], quantity, value and target. Names with blanks and key words are written in brackets. The function
-number(value, format) formats as Python does, for instance number(mean, '.1f').
+number(value, format) formats as Python does, for instance number(mean, '.1f'). The aggregate range(value, format) is the
+smallest to the largest value.
 
 Each number in the text of a page must be in a table of the page or in the header of a CSV file that a query of the page
 reads, rounded to the digits of the text. In README.md, all numbers in a line of the section on accuracy and speed must
@@ -90,6 +91,21 @@ def pairs(line):
 
 def formatted(value, how):
     return format(value, how).replace("%", " %") if isinstance(value, (int, float)) else value
+
+
+class Range:
+    """The SQL aggregate range(value, format)."""
+
+    def __init__(self):
+        self.values, self.how = [], ""
+
+    def step(self, value, how):
+        self.how = how
+        self.values += [value] if value is not None else []
+
+    def finalize(self):
+        ends = [formatted(end(self.values), self.how) for end in (min, max)] if self.values else []
+        return " to ".join(dict.fromkeys(ends)) or None
 
 
 def shown(value):
@@ -173,6 +189,7 @@ def main(words):
     sources = [Source(file) for file in sorted(folder.glob("*.csv"))]
     connection = sqlite3.connect(":memory:")
     connection.create_function("number", 2, formatted)
+    connection.create_aggregate("range", 2, Range)
     for source in sources:
         source.load(connection)
     for page in sorted(folder.glob("*.md")):

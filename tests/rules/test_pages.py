@@ -90,6 +90,13 @@ class Pages(unittest.TestCase):
         self.assertIn(source, text)
         self.assertEqual(self.pages("--check"), (0, ""))
 
+    def test_range_of_a_column(self):
+        self.table.write_text(TABLE + '"hexahedra, stick",10788,13.2,\n')
+        query = "SELECT range(unknowns, 'd') AS n, range(mean, '.1f') AS mean, range(share + NULL, 'g') AS none FROM krylov"
+        self.page.write_text(PAGE.format(target=25) + f"\n<!-- query\n{query}\n-->\n<!-- end -->\n")
+        self.assertEqual(self.pages(), (0, ""))
+        self.assertIn("| n | mean | none |\n| --- | --- | --- |\n| 10788 | 13.2 to 15.4 | |\n", self.page.read_text())
+
     def test_changed_digit_in_the_text(self):
         before = self.page.read_text()
         changes = {"25": "26", "15.4": "15.5", "10,788": "10,789", "3.1e-2": "3.2e-2", "12.5 %": "12.6 %"}
