@@ -153,6 +153,8 @@ def extremes():
         sets = sum((table(name, *enumerate(values)) for name, values in loads.items()), pressure(("fracture",)) + held(12))
         yield Scene(f"block {dim}D injection", f"contact/block_{dim}d.xml", sets, exact.block, newton=20, quick=dim == 2)
     for dim, names in ((2, cases), (3, ("K_t=1e-12", "mu=1e6", "theta=89", "nu=0.4999", "g0=-1"))):
+        if dim == 3:  # pressures on faces, for rock that is almost incompressible, require three periodic cells
+            cases["nu=0.4999"] += ("Mesh.cells={3, 3, 2}",)
         for name in names:
             yield Scene(f"block {dim}D {name}", f"contact/block_{dim}d.xml", cases[name], exact.block, newton=20,
                         quick=dim == 2 and name in ("K_t=1e-12", "K_t=1e12", "mu=0", "theta=89", "g0=1e-12", "G=1e12"))
