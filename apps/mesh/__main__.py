@@ -27,6 +27,7 @@ def arguments(words):
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="the mesh, NAME.msh")
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="override an entry of the scene; may be repeated")
     parser.add_argument("--picture", type=Path, metavar="PNG", help="also draw the mesh")
+    parser.add_argument("--strict", action="store_true", help="take warnings as errors")
     parser.add_argument("--run", action="store_true", help=argparse.SUPPRESS)  # for a run with this mesh folder
     parser.add_argument("--quiet", action="store_true", help="print only errors and messages about long operations")
     parser.add_argument("--program", required=True, help=argparse.SUPPRESS)  # path of the program, set by the launcher
@@ -188,7 +189,7 @@ def make(options):
     try:
         msh_file.write(unfinished, mesh.points, groups, msh_file.singles_of(plan))
         content = {"input": print_of_input, "mesh": hashlib.sha256(unfinished.read_bytes()).hexdigest(),
-                   "warnings": checks.left_out(plan) + ([] if network.repair == "join" else checks.near_fractures(plan)),
+                   "warnings": checks.left_out(plan) + checks.shortened(plan) + ([] if network.repair == "join" else checks.near_fractures(plan)),
                    **report.of_mesh(mesh, plan, sizes)}
         unfinished.replace(options.output)
     finally:
@@ -231,7 +232,11 @@ def main(words=None):
             end_results(options.output.parent / "results.json", reason)
         return 1
     for line in warnings:
-        print(f"warning: {options.scene}: {line}", file=sys.stderr)
+        print(f"{'sprekk' if options.strict else 'warning'}: {options.scene}: {line}", file=sys.stderr)
+    if warnings and options.strict:
+        if options.run:
+            end_results(options.output.parent / "results.json", in_words("\n".join(warnings), options.scene))
+        return 1
     if not options.quiet:
         print(f"{options.output}: {reported or 'is up to date'}")
     return 0

@@ -98,6 +98,18 @@ def left_out(plan):
     return [f"{len(reasons)} of {total} fractures are left out of the mesh: {listed}"] if reasons else []
 
 
+def shortened(plan):
+    """Returns a warning about mapped fractures with less than half of their length or area in the mesh, in a list.
+
+    Random fractures cross the boundary by chance, without a warning."""
+    entries, drawn = plan.network.journal.entries, set(plan.network.at_random)
+    found = [name for name, e in entries.items() if name not in drawn and not e.reason and (e.meshed or 0) < 0.5 * e.given]
+    more, size = len(found) - MAX_LISTED, "length" if plan.dim == 2 else "area"
+    listed = ", ".join(found[:MAX_LISTED]) + (f" and {more} more, see the table of the mesh" if more > 0 else "")
+    return [f"{len(found)} of {len(entries)} fractures have less than half of their {size} in the mesh, the rest is outside of the "
+            f"domain or left out: {listed}"] if found else []
+
+
 def near_fractures(plan):
     """Returns warnings about fractures that come close without meeting there, the nearest first.
 

@@ -346,6 +346,9 @@ def read_csv(path, kind, dim=2, entries=(), corners=32):
             known = TitledColumns(kind, words, path, k, dim, entries)
             continue
         known = known or Columns(kind, dim)
+        if known.titles and kind != "polygons" and len(words) < known.count:
+            table.errors.append(f"{place}: has {len(words)} columns, the titles are {known.count}; an empty cell needs its separator")
+            continue
         while len(words) > 1 and not words[-1].strip():  # trailing commas
             words.pop()
         read_row(words, known, place, table)

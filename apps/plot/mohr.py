@@ -109,7 +109,9 @@ def stress_paths(content, time):
     steps = [step for step in content["steps"] if step.get("single_fractures") and step["time"] <= time]
     if len(steps) < 2 or "max_slip" not in steps[-1]["single_fractures"]:
         return {}
-    slip = [value or 0 for value in steps[-1]["single_fractures"]["max_slip"]]
+    last = steps[-1]["single_fractures"]
+    slipped = last.get("fraction_has_slipped") or [1] * len(last["max_slip"])  # without: round-off of slip
+    slip = [(value or 0) * ((share or 0) > 0) for value, share in zip(last["max_slip"], slipped)]
     shown = [k for k in foremost(slip, MAX_PATHS) if slip[k] > 0]
     means = np.array(
         [[step["single_fractures"]["mean_traction_local"][k] for k in shown] for step in steps], dtype=float

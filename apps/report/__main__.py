@@ -84,6 +84,7 @@ def report(options):
         directory.resolve().name,
         content,
         entries,
+        figures.headline(content),
         checks.of_run(directory, content, entries),
         figures.of_run(content, entries.reference, found),
         tables,

@@ -11,10 +11,10 @@ NOISE = 1e-9  # round-off relative to the largest value of a column
 
 OF_FRACTURES = [
     ("area", "area", "m²"),
-    ("first_slip", "first slip at", "s"),
-    ("fraction_slip", "slipping at the end", ""),
-    ("fraction_has_slipped", "has slipped", ""),
-    ("fraction_open", "open at the end", ""),
+    ("first_slip", "first slip after", "s"),
+    ("fraction_slip", "slipping at the end", "%"),
+    ("fraction_has_slipped", "has slipped", "%"),
+    ("fraction_open", "open at the end", "%"),
     ("mean_slip", "mean slip", "m"),
     ("max_slip", "largest slip", "m"),
     ("max_opening", "largest opening", "m"),
@@ -27,10 +27,14 @@ CHANGES = ("max_slip", "first_slip", "fraction_has_slipped", "fraction_open")  #
 OF_PLANE = {"area": ("length", "m"), "moment": ("moment per depth", "N")}  # titles and units in 2D
 
 
-def column(title, values, base):
-    """Returns the title with a unit, and the values as texts."""
+def column(title, values, base, end=None):
+    """Returns the title with a unit, and the values as texts. Shares are given in percent. `end`: time of the last step, which
+    determines the unit of times."""
     largest = max((abs(value) for value in values if value is not None), default=0)
-    factor, unit = unit_of(largest, base) if base else (1, "")
+    if base == "%":
+        factor, unit = 0.01, base
+    else:
+        factor, unit = unit_of(end if base == "s" and end else largest, base) if base else (1, "")
     values = [0 if value is not None and abs(value) <= NOISE * largest else value for value in values]
     return f"{title} ({unit})" if unit else title, [
         number(None if value is None else value / factor) for value in values
@@ -54,8 +58,19 @@ def singles(content, step, found):
     }
 
 
-def of_fractures(fractures, dim):
-    """Yields the table of fractures, sorted by slip."""
+def without_noise(fractures):
+    """Returns the fractures with zero slip, without its round-off, where no face has slipped."""
+    return {
+        name: {**one, **{key: 0.0 for key in ("max_slip", "mean_slip") if key in one}}
+        if one.get("fraction_has_slipped") == 0
+        else one
+        for name, one in fractures.items()
+    }
+
+
+def of_fractures(fractures, dim, end=None):
+    """Yields the table of fractures, sorted by slip. `end`: time of the last step."""
+    fractures = without_noise(fractures)
     names = sorted(fractures, key=lambda name: -(fractures[name].get("max_slip") or 0))
     changed = [name for name in names if any(fractures[name].get(key) for key in CHANGES)]
     shown = (changed or names)[:MAX_ROWS]
@@ -63,12 +78,15 @@ def of_fractures(fractures, dim):
     for key, title, base in OF_FRACTURES:
         if any(fractures[name].get(key) is not None for name in shown):
             title, base = OF_PLANE.get(key, (title, base)) if dim == 2 else (title, base)
-            columns.append(column(title, [fractures[name].get(key) for name in shown], base))
+            columns.append(column(title, [fractures[name].get(key) for name in shown], base, end))
     if not shown or len(columns) == 1:
         return
+    closes = any((fractures[name].get("max_opening") or 0) < 0 for name in shown)
     others = len(names) - len(shown)
-    note = f"{others} others {'with less slip' if len(changed) != len(shown) else 'without slip or opening'}" if others else ""
-    yield Table("Fractures", [title for title, _ in columns], list(zip(*(values for _, values in columns))), note)
+    notes = ["negative openings are closures"] * closes
+    if others:
+        notes.append(f"{others} others {'with less slip' if len(changed) != len(shown) else 'without slip or opening'}")
+    yield Table("Fractures", [title for title, _ in columns], list(zip(*(values for _, values in columns))), "; ".join(notes))
 
 
 def of_joints(content, reference):
@@ -109,16 +127,21 @@ def of_boundaries(step):
         )
 
 
-def of_wells(step, dim):
-    wells = step.get("wells", {})
+def of_wells(steps, dim):
+    wells = steps[-1].get("wells", {})
     if wells:
         warm = any("temperature" in well for well in wells.values())
+        largest = {
+            name: max((step["wells"].get(name, {}).get("pressure") or 0 for step in steps), default=None)
+            for name in wells
+        }
         rows = [
-            (name, number(well.get("rate")), quantity(well.get("pressure"), "Pa"))
+            (name, number(well.get("rate")), quantity(well.get("pressure"), "Pa"), quantity(largest[name], "Pa"))
             + ((f"{well.get('temperature', np.nan):.2f} K",) if warm else ())
             for name, well in wells.items()
         ]
-        titles = ["well", f"rate ({RATES['fluid'][dim == 2]})", "pressure"] + ["temperature of the fluid"] * warm
+        titles = ["well", f"rate at the end ({RATES['fluid'][dim == 2]})", "pressure at the end", "largest pressure"]
+        titles += ["temperature of the fluid"] * warm
         yield Table("Wells", titles, rows, "")
 
 
@@ -143,14 +166,14 @@ def of_costs(content):
     yield Table("Time", ["part", "calls", "seconds", "CPU seconds"], rows, "parts may include others")
 
 
-def of_events(found, dim):
-    """Yields the table of slip events, the largest first."""
+def of_events(found, dim, end=None):
+    """Yields the table of slip events, the largest first. `end`: time of the last step."""
     shown = sorted(found, key=lambda event: -event.moment)[:MAX_ROWS]
     if not shown:
         return
     moment = OF_PLANE["moment"] if dim == 2 else ("moment", "N m")
     columns = [("fracture", [event.fracture for event in shown])] + [
-        column(title, [getattr(event, key) for event in shown], base)
+        column(title, [getattr(event, key) for event in shown], base, end)
         for key, title, base in (
             ("magnitude", "magnitude" + (" per metre of depth" if dim == 2 else ""), ""),
             ("start", "start", "s"),
@@ -188,14 +211,29 @@ def of_run(content, reference, found):
     last = next((step for step in reversed(content["steps"]) if "fractures" in step), content["steps"][-1])
     dim = content.get("mesh", {}).get("dimension", 3)
     fractures = singles(content, last, found) or last.get("fractures", {})
+    end = last["time"]
     tables = [
-        *of_fractures(fractures, dim),
-        *of_events(found, dim),
+        *of_fractures(fractures, dim, end),
+        *of_events(found, dim, end),
         *of_points(content, last),
-        *of_wells(last, dim),
+        *of_wells([step for step in content["steps"] if "wells" in step] or [last], dim),
         *of_boundaries(last),
     ]
     return tables, [*of_joints(content, reference), *of_costs(content)]
+
+
+def headline(content):
+    """Returns sentences with the convergence of the run and the fracture with the largest slip."""
+    steps = content["steps"]
+    done = content["status"] == "completed" and all(step["converged"] for step in steps)
+    found = ["All steps converged." if done else f"The run {content['status']}; see the checks."]
+    last = next((step for step in reversed(steps) if "fractures" in step), steps[-1])
+    fractures = without_noise(singles(content, last, []) or last.get("fractures", {}))
+    slip = {name: one.get("max_slip") or 0 for name, one in fractures.items()}
+    if slip:
+        name = max(slip, key=slip.get)
+        found.append(f"The largest slip is {quantity(slip[name], 'm')}, on {name}." if slip[name] > 0 else "No fracture slips.")
+    return " ".join(found)
 
 
 def time_of_pictures(content, written):

@@ -57,7 +57,7 @@ def number_of_fractures(results, scene):
     )
 
 
-def summary(results, scene):
+def summary(results, scene, headline):
     mesh, steps = results.get("mesh", {}), results["steps"]
     body = {2: "A plane section of rock", 3: "A body of rock"}.get(mesh.get("dimension"), "Rock")
     physics = [
@@ -68,7 +68,7 @@ def summary(results, scene):
     return (
         f"{body}{' ' + ' and '.join(physics) if physics else ''}, of {mesh.get('cells', 0)} cells, has {number_of_fractures(results, scene)} "
         f"({mesh.get('fracture_faces', 0)} faces). {count(len(steps), 'step')} up to "
-        f"t = {quantity(steps[-1]['time'], 's')}."
+        f"t = {quantity(steps[-1]['time'], 's')}. {headline}"
     )
 
 
@@ -127,7 +127,7 @@ def view_part(view, viewer):
     return place, f"<script type='application/json' id='view-data'>{data}</script><script>{viewer}</script>"
 
 
-def of_run(name, results, scene, checks, tables, files, drawn, left_out, view, viewer):
+def of_run(name, results, scene, headline, checks, tables, files, drawn, left_out, view, viewer):
     style = (Path(__file__).parent / "page.css").read_text()
     found, costs = tables
     convergence = [picture for picture in drawn if picture[0] == "convergence"]
@@ -136,7 +136,7 @@ def of_run(name, results, scene, checks, tables, files, drawn, left_out, view, v
         (
             "scene",
             "Scene",
-            f"<p>{text(summary(results, scene))}</p><details><summary>Entries that differ from the defaults</summary>{scene_in_words(scene)}</details>",
+            f"<p>{text(summary(results, scene, headline))}</p><details><summary>Entries that differ from the defaults</summary>{scene_in_words(scene)}</details>",
         ),
         ("checks", "Checks", checks_list(checks)),
         ("figures", "Key figures", ("".join(map(table, found)) or "<p>None.</p>") + downloads(files)),

@@ -6,7 +6,8 @@ from numbers_in_words import in_unit
 
 
 class Reference:
-    """(unit, default) of entries in docs/use/reference.md, by section. NAME matches any name.
+    """(unit, defaults) of entries in docs/use/reference.md, by section. NAME matches any name. An entry of several kinds of
+    a section, such as the types of materials, may have several defaults.
 
     A meaning with `(2D: m^2/s)` gives the unit in 2D."""
 
@@ -19,21 +20,22 @@ class Reference:
             elif line.startswith("| ") and not line.startswith("| name "):
                 name, _, unit, default, *_, meaning = re.split(r"(?<!\\)\|", line.strip("| "))
                 per_depth = re.findall(r"\(2D: (\S+)\)", meaning) if dim == 2 else []
-                section[name.strip()] = per_depth[0] if len(per_depth) == 1 else unit.strip(), default.strip()
+                unit = per_depth[0] if len(per_depth) == 1 else unit.strip()
+                section.setdefault(name.strip(), (unit, []))[1].append(default.strip())
 
     def entry(self, path, name):
-        """Returns (unit, default) of an entry of a section, or ("", None) if it is unknown."""
+        """Returns (unit, defaults) of an entry of a section, or ("", []) if it is unknown."""
         for pattern, section in self.sections.items():
             if len(pattern) == len(path) and all(p in ("NAME", q) for p, q in zip(pattern, path)) and name in section:
                 return section[name]
-        return "", None
+        return "", []
 
 
 def same(value, default):
     try:
         return float(value) == float(default)
     except (TypeError, ValueError):
-        return value == default or (value in ("", "{}") and default in ("{}", '""', "absent"))
+        return value == default
 
 
 class Scene:
@@ -50,8 +52,8 @@ class Scene:
     def said(self, path, section):
         """Yields (entry, readable value) of entries that differ from defaults."""
         for name, value in section.items():
-            unit, default = self.reference.entry(path, name)
-            if not isinstance(value, dict) and not same(value, default):
+            unit, defaults = self.reference.entry(path, name)
+            if not isinstance(value, dict) and value not in ("", "{}") and not any(same(value, one) for one in defaults):
                 yield name, in_unit(value, unit)
 
     def blocks(self, path=(), section=None):

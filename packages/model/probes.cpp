@@ -148,8 +148,13 @@ void Probes::add(const std::string& name, const Probe& probe, const Known& known
     fracture = index(mesh.fracture_names, *probe.fracture, [](const auto& one) { return one; });
     is_set = fracture >= 0;
     if (!is_set) fracture = index(mesh.single_fractures, *probe.fracture, [](const auto& one) { return one.name; });
-    SPREKK_CHECK(fracture >= 0, "\"fracture\": is \"{}\", must be one of {}, or one of their fractures",
-                 *probe.fracture, base::quoted_list(mesh.fracture_names));
+    if (fracture < 0) {
+      auto known = mesh.fracture_names;
+      for (const auto& one : mesh.single_fractures) known.push_back(one.name);
+      throw Error(fmt::format("\"fracture\": is \"{}\", must be one of {}, or one of their fractures{}",
+                              *probe.fracture, base::quoted_list(mesh.fracture_names),
+                              base::did_you_mean(*probe.fracture, known)));
+    }
   }
   for (auto wanted = probe.outputs.begin(); wanted != probe.outputs.end(); ++wanted)
     SPREKK_CHECK(std::find(probe.outputs.begin(), wanted, *wanted) == wanted, "\"outputs\": \"{}\" is there twice",

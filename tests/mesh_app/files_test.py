@@ -49,7 +49,7 @@ class Files(MeshTest):
 
         Other columns may have units. One name means one fracture."""
         self.write("net.csv", "name,x0,y0,x1,y1,friction coefficient,initial aperture [mm]", "A,0.2,0.5,0.4,0.5,0.4,0.1", "A,0.4,0.5,0.8,0.6,0.4,0.1",
-                   "B,0.5,0.2,0.5,0.4,,", '"C, left",0.1,0.1,0.2,0.2,0.7')
+                   "B,0.5,0.2,0.5,0.4,,", '"C, left",0.1,0.1,0.2,0.2,0.7,')
         self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}))
         self.assertEqual(self.singles(), [("A", {"friction coefficient": "0.4", "initial aperture": "0.1 mm"}), ("B", {}),
                                           ("C, left", {"friction coefficient": "0.7"})])
@@ -67,7 +67,7 @@ class Files(MeshTest):
         net = self.write("net.csv", "name,x0,y0,x1,y1,friction angle", "A,0.2,0.5,0.4,0.5,30", "A,0.4,0.5,0.8,0.6,31")
         self.refused(net, f'fracture A ({net}: line 3): has the name "A", as fracture A ({net}: line 2), but different values')
         net = self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4")
-        self.refused(net, f'{net}: line 2: has no number in column 5, "y1"')
+        self.refused(net, f"{net}: line 2: has 4 columns, the titles are 5; an empty cell needs its separator")
         other = self.write("other.csv", "name,x0,y0,x1,y1", "A,0.2,0.2,0.4,0.2")
         self.write("net.csv", "name,x0,y0,x1,y1", "A,0.2,0.5,0.4,0.5")
         reported = self.mesh(self.scene(fractures={"one": {"file": "net.csv"}, "two": {"file": "other.csv"}}), expect=1)
@@ -221,7 +221,7 @@ class Files(MeshTest):
 
     def test_bad_rows(self):
         net = self.write("net.csv", "id,x0,y0,x1,y1", "1,0.2,0.5,0.8", "2,0.2,nan,0.8,0.5", "3,0.2,0.5,O.8,0.5", "4,0.1,0.1,0.2,0.2")
-        self.refused(net, f'{net}: line 2: has no number in column 5, "y1"',
+        self.refused(net, f"{net}: line 2: has 4 columns, the titles are 5; an empty cell needs its separator",
                      f'{net}: line 3: "nan" in column 3 is not a finite number',
                      f'{net}: line 4: "O.8" in column 4 is not a number')
         net = self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.2,0.5,0.8,0.5", "3,1.5,0.5,1.8,0.5")
@@ -272,6 +272,8 @@ class Files(MeshTest):
             self.refused(net, f"{net}: line 1: {why}")
         net = self.write("net.csv", "x0,y0,x1,y1", "0.2,0.1,0.8,0.2,1")
         self.refused(net, f"{net}: line 2: has 5 columns, the titles are 4")
+        net = self.write("net.csv", "name,x0,y0,x1,y1,friction coefficient", "a,0.2,0.1,0.8,0.2,", "b,0.2,0.4,0.8,0.5")
+        self.refused(net, f"{net}: line 3: has 5 columns, the titles are 6; an empty cell needs its separator")
         net = self.write("net.csv", "x0,y0,z0,x1,y1,z1,x3,y3,z3", "0.2,0.2,0.5,0.8,0.2,0.5,0.8,0.8,0.5")
         self.refused(net, f'{net}: line 1: the titles of polygons lack "x2", "y2", "z2"', dim=3, **self.CUBE)
 

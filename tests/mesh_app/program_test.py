@@ -55,6 +55,18 @@ class Runs(MeshTest):
             self.assertRegex(err.getvalue(), r"^warning: .*scene.xml: fracture 1 \(.*net.csv: line 1\) and fracture 2 \(.*net.csv: line 2\) "
                                              r'are 0.001 m apart at \(0.5, 0.5\d*\) without meeting; if they should meet, .* "tolerance"\n$')
 
+    def test_fractures_outside_of_the_domain(self):
+        """Less than half of a mapped trace in the domain gives a warning, and an error with --strict."""
+        self.write("net.csv", "1,0.2,0.5,0.8,0.5", "2,0.5,0.7,0.5,1.2", "3,0.3,0.8,0.3,4")
+        scene = self.scene(fractures={"set": {"file": "net.csv"}}, relative_size=0.2)
+        for strict, status, opens in (((), 0, "warning"), (("--strict",), 1, "sprekk")):
+            err = io.StringIO()
+            with contextlib.redirect_stderr(err):
+                words = [str(scene), "-o", str(self.folder / "net.msh"), "--program", str(program.PROGRAM), "--quiet", *strict]
+                self.assertEqual(app.main(words), status)
+            self.assertRegex(err.getvalue(), rf"^{opens}: .*scene.xml: 1 of 3 fractures have less than half of their length in the mesh, "
+                                             r"the rest is outside of the domain or left out: fracture 3 \(.*net.csv: line 3\)\n$")
+
     def test_long_operations_are_reported(self):
         from progress import doing
         err = io.StringIO()

@@ -146,7 +146,7 @@ class Checks(ReportTest):
         """Rates of a 2D scene are in m^2/s and W/m in checks, tables and scene; in 3D in m^3/s and W."""
         self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
         page = Path(self.write()).read_text()
-        self.assertIn("rate (m²/s)", page)
+        self.assertIn("rate at the end (m²/s)", page)
         self.assertRegex(page, r"<dt>rate</dt><dd>[^<]* m\^2/s</dd>")
         for wrong in ("m³/s", "m^3/s"):
             self.assertNotIn(wrong, page)
@@ -157,8 +157,8 @@ class Checks(ReportTest):
         ):
             for check, unit in zip(checks.fluid([step], dim), units):
                 self.assertIn(unit, check.words)
-            (table,) = figures.of_wells(step, dim)
-            self.assertEqual(table.columns[1], f"rate ({numbers_in_words.RATES['fluid'][dim == 2]})")
+            (table,) = figures.of_wells([step], dim)
+            self.assertEqual(table.columns[1], f"rate at the end ({numbers_in_words.RATES['fluid'][dim == 2]})")
 
     def test_stages(self):
         """With excavated faces and weaker joints the report does not check the contact laws."""
@@ -361,7 +361,7 @@ class Words(ReportTest):
         titles = [
             "fracture",
             "length (m)",
-            "first slip at (s)",
+            "first slip after (s)",
             "mean slip (mm)",
             "largest slip (mm)",
             "moment per depth (N)",

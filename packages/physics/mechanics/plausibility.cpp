@@ -404,7 +404,8 @@ std::string strength_doubt(const Setting& setting) {
       fmt::format("{} beyond the strength of the joint ({:.3g} % of the area): \"{}\"{}",
                   n == 1 ? "a fracture is" : fmt::format("{} fractures are", n), 100 * area / total,
                   fmt::join(names, "\", \""), n > reported ? ", ..." : ""),
-      "they slip or open in the first step without any load",
+      n == 1 ? "it slips or opens in the first step without any load"
+             : "they slip or open in the first step without any load",
       "check the initial stress, the pressure and the friction, or treat this step as part of the initial state");
 }
 
