@@ -7,6 +7,8 @@
 #include "transport/fracture_faces.hpp"
 #include "transport/hybrid_rock.hpp"
 
+#include <algorithm>
+
 namespace sprekk::transport {
 
 using assembly::Loop;
@@ -40,6 +42,19 @@ struct InCells {
   static EndGraph graph(const mesh::Mesh& mesh) { return end_graph_of_cells(mesh); }
   static LocalIndex row(const mesh::Mesh&, LocalIndex cell) { return cell; }
   static std::vector<Real> sizes(const mesh::Mesh& mesh) { return assembly::cell_volumes(mesh); }
+  /// Marks the faces on boundaries without a condition on u, [local cell][face].
+  static ConstView<char**> entrances(const mesh::Mesh& mesh, const transport::Carried& quantity) {
+    const base::HostTable<char**> marks("entrances", mesh.n_cells(), Flow::n);
+    for (const auto& face : mesh.boundary_faces) {
+      const auto prescribes = [&](const auto& one) {
+        return one.boundary == mesh.boundary_names[face.boundary] &&
+               (one.region.empty() || one.region == mesh.region_names[mesh.cell_region[face.cell]]);
+      };
+      const auto& all = quantity.prescribed;
+      if (std::none_of(all.begin(), all.end(), prescribes)) marks(face.cell, face.local_face) = 1;
+    }
+    return marks.on_device();
+  }
   /// Storage volume per size of the entity, m^3.
   Real room(LocalIndex, const Real*, Real) const { return 1; }
   /// Number of columns of the history "passed"; 0 without stabilisation.
@@ -108,6 +123,8 @@ struct InFractures {
   static constexpr auto entity = fields::Entity::fracture_face;
   static EndGraph graph(const mesh::Mesh& mesh) { return end_graph_of_fractures(mesh); }
   static LocalIndex row(const mesh::Mesh& mesh, LocalIndex face) { return mesh.facets->fracture_face[face]; }
+  /// None: the two-point flux at an end without a condition gives u_i = u_K.
+  static ConstView<char**> entrances(const mesh::Mesh&, const transport::Carried&) { return {}; }
   static std::vector<Real> sizes(const mesh::Mesh& mesh) {
     std::vector<Real> areas;
     for (const auto& face : mesh.fracture_faces) areas.push_back(face.area);
@@ -166,6 +183,7 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
     assembler_ = std::make_unique<Assembler>(context, Where::loop, numbers(rows()), numbers(columns()),
                                              Assembler::Positions::keep);
     where_->bind(context);
+    entrances_ = Where::entrances(*context.mesh(), carried_);
     if (corrects()) bind_correction(context);
   }
 
@@ -246,7 +264,7 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
     gains_ = assembly::to_device(std::vector<Real>(rows.size(), 0), "gains");
   }
 
-  Op at(const assembly::State& state) const { return {where_->at(state), carried_.capacity}; }
+  Op at(const assembly::State& state) const { return {where_->at(state), carried_.capacity, entrances_}; }
   std::vector<std::string> rows() const { return where_->carried(carried_.field); }
   std::vector<std::string> columns() const {
     auto names = where_->drivers();
@@ -257,6 +275,7 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
   std::unique_ptr<Where> where_;
   Carried carried_;
   std::unique_ptr<Assembler> assembler_;
+  ConstView<char**> entrances_;
   std::optional<std::vector<Real>> stored_;  // [local entity] per volume and unit of u; this and the following for
                                              // Antidiffusion only
   std::vector<Real> sizes_;                  // [local entity]

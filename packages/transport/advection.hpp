@@ -22,7 +22,9 @@ struct FlowInRock {
 /// with c = Carried::capacity and the outward flow q_i of HybridDiffusion and Stabilisation. The facet between two
 /// cells is their upwind neighbour. Since the fluid mass is balanced, this equals the balance of c u times the mass.
 /// The rows contain differences only: a uniform u stays uniform, even with an inaccurate flow solution. Outflow through
-/// a boundary without a condition on u carries u_K.
+/// a boundary without a condition on u carries u_K. So does inflow: the row of its facet receives -c q_i (u_i - u_K).
+/// Cell and facet then exchange u as by a conductance -c q_i. Without this term, u_i would be extrapolated from the
+/// interior and carried back into the cell, and small differences would grow fast from step to step.
 ///
 /// `stored`: storage capacity of local cells per volume and unit of u, for Antidiffusion with implicit Euler; none:
 /// upwind only. History variables: those of Antidiffusion and StabilisedFlow.

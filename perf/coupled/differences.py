@@ -31,7 +31,7 @@ class Scales:
         """Raises the scales of fluxes to their round-off.
 
         The round-off of driving pressures and temperatures is 1e-14 of their level; it is multiplied by the
-        conductance of a cell."""
+        conductance of a cell, and that of temperature also by the heat capacity of the flow."""
         first = written.states[0]
         edge = (first.bulk.sizes.min()) ** (1 / first.bulk.dim)
         level = abs(self.start["pressure"]) + self.largest.get("pressure", 0)
@@ -47,7 +47,8 @@ class Scales:
             level = self.start["temperature"] + self.largest["temperature"]
             conducts = max((float(word) for m in written.entries["Materials"].values()
                             for word in m.get("thermal conductivity", "{}").strip("{}").split(",") if word.strip()), default=0)
-            self.largest["heat flux"] = max(self.largest["heat flux"], ROUNDING / ALLOWED * level * conducts / edge)
+            carries = written.number("Heat", "fluid heat capacity", default=0) * self.largest.get("Darcy velocity", 0)
+            self.largest["heat flux"] = max(self.largest["heat flux"], ROUNDING / ALLOWED * level * (conducts / edge + carries))
 
     def _min_stresses(self, written):
         """Thermal stress and expansion are known to the rounding of temperature: 1e-14 of its level."""

@@ -342,6 +342,9 @@ std::vector<CarriedQuantity> Heat::Transport::carried(const Scene& scene) {
     };
   }
   for (const auto& [name, well] : scene.heat->wells) energy.in_wells.emplace(name, well.temperature);
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.temperature && !condition.fracture)
+      energy.prescribed.push_back({condition.boundary, condition.region.value_or("")});
   return {energy};
 }
 

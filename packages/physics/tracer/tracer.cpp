@@ -219,6 +219,9 @@ std::vector<CarriedQuantity> Tracer::Transport::carried(const Scene& scene) {
     };
   }
   for (const auto& [name, well] : scene.tracer->wells) mass.in_wells.emplace(name, well.concentration);
+  for (const auto& [name, condition] : scene.boundary_conditions)
+    if (condition.concentration && !condition.fracture)
+      mass.prescribed.push_back({condition.boundary, condition.region.value_or("")});
   return {mass};
 }
 
