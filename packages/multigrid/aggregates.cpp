@@ -87,7 +87,8 @@ std::vector<bool> weak_couplings(const NodeMatrix& A, Real strong) {
       for (int r = 0; r < A.height && j != i; ++r)
         maximum = std::fmax(maximum, largest(&A.value(A.height * A.width * begin + (r * n + k) * A.width), A.width));
       const Real mean = std::sqrt(diagonal(i) * diagonal(j));
-      if (maximum > rounding * mean) size[begin + k] = maximum / mean;
+      const bool positive = strong > 0 && A.height == 1 && A.value(begin + k) > 0;
+      if (maximum > rounding * mean) size[begin + k] = positive ? rounding : maximum / mean;
       strongest(i) = std::fmax(strongest(i), size[begin + k]);
     }
   }

@@ -38,7 +38,7 @@ struct Nodes {
 
 /// Returns the weak entries of the graph of a square matrix, except round-off. Relative to the geometric mean of the
 /// diagonals of both nodes, entries are weak below 0.02, and below `strong` times the largest entry of either node.
-/// Collective.
+/// With `strong` > 0, positive entries of scalar matrices are weak and do not count as the largest one. Collective.
 std::vector<bool> weak_couplings(const NodeMatrix& A, Real strong);
 
 /// Returns the nodes of a square matrix. Neighbours have blocks above round-off. `modes`: [unknown, mode], null for

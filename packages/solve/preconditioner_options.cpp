@@ -17,7 +17,7 @@ multigrid::Options MultigridOptions::of_corners(int dim) const {
   options.degree = degree.value_or(dim == 2 ? 8 : 6);
   options.coarse_size = coarsest.value_or(4000);
   options.raise = 1e-12;
-  options.strong = dim == 2 ? 0.5 : 0;
+  options.strong = dim == 2 ? 0.7 : 0;
   return options;
 }
 

@@ -191,6 +191,75 @@ TEST(Multigrid, TakesFewIterationsWhereFlatCellsAreInContact) {
   }
 }
 
+/// Linear elements of -div K grad u on squares divided along alternating diagonals, [n + 1, n + 1] nodes, with u = 0 at
+/// the left and right boundary. K is 100 at 30 degrees to the mesh and 1 across.
+struct Anisotropic {
+  explicit Anisotropic(int n_) : n(n_), map(rcp(new Map((n - 1) * (n + 1), 0, Tpetra::getDefaultComm()))) {
+    matrix = rcp(new CrsMatrix(map, 16));
+    for (int x = 0; x < n; ++x)
+      for (int y = 0; y < n; ++y) {
+        const std::array<int, 2> a{x, y}, b{x + 1, y}, c{x, y + 1}, d{x + 1, y + 1};
+        const bool odd = (x + y) % 2 == 1;
+        add({a, b, odd ? c : d});
+        add({odd ? b : a, d, c});
+      }
+    matrix->fillComplete();
+  }
+  GlobalIndex number(const std::array<int, 2>& p) const { return p[0] - 1 + GlobalIndex(n - 1) * p[1]; }
+  void add(const std::array<std::array<int, 2>, 3>& corners) {
+    constexpr Real cosine2 = 0.75, sine2 = 0.25, product = 0.4330127018922193;
+    constexpr Real K[2][2] = {{100 * cosine2 + sine2, 99 * product}, {99 * product, 100 * sine2 + cosine2}};
+    Real gradient[3][2];  // of a cell of size 1/2
+    for (int k = 0; k < 3; ++k) {
+      const auto &p = corners[(k + 1) % 3], &q = corners[(k + 2) % 3];
+      gradient[k][0] = p[1] - q[1];
+      gradient[k][1] = q[0] - p[0];
+    }
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < 3; ++l) {
+        const auto &p = corners[k], &q = corners[l];
+        if (p[0] % n == 0 || q[0] % n == 0 || !map->isNodeGlobalElement(number(p))) continue;
+        Real value = 0;
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < 2; ++j) value += gradient[k][i] * K[i][j] * gradient[l][j] / 2;
+        const GlobalIndex column = number(q);
+        matrix->insertGlobalValues(number(p), 1, &value, &column);
+      }
+  }
+  int n;
+  RCP<const Map> map;
+  RCP<CrsMatrix> matrix;
+};
+
+/// The bound is that of `./sprekk perf flow`.
+TEST(Multigrid, TakesFewIterationsInAnisotropicRock) {
+  const Anisotropic rock(128);
+  multigrid::Options options;
+  options.strong = 0.7;
+  multigrid::Multigrid M(
+      wrapped(rock.matrix),
+      multigrid::nodes_of(multigrid::node_matrix(*rock.matrix, 1), Teuchos::null, Teuchos::null, options.strong), 1,
+      Teuchos::null, options);
+  M.setup(wrapped(rock.matrix), true);
+  EXPECT_LE(iterations(*rock.matrix, M), 30);
+}
+
+/// With a relative threshold, positive couplings are weak.
+TEST(Aggregates, LeaveOutPositiveCouplings) {
+  const Anisotropic rock(8);
+  const auto A = multigrid::node_matrix(*rock.matrix, 1);
+  const auto all = multigrid::weak_couplings(A, 0), signs = multigrid::weak_couplings(A, 0.01);
+  int n_positive = 0;
+  for (LocalIndex i = 0; i < A.graph.n_rows(); ++i)
+    for (std::size_t k = A.graph.start(i); k < A.graph.start(i + 1); ++k) {
+      const bool positive = A.graph.column(k) != i && A.value(k) > 0.1;
+      EXPECT_EQ(signs[k], positive);
+      EXPECT_FALSE(all[k]);
+      n_positive += positive;
+    }
+  EXPECT_GT(base::sum_over_ranks(*rock.map->getComm(), n_positive), 0);
+}
+
 /// Contact is weak only between flat cells that are out of reach. In all other cases the graph is unchanged.
 TEST(Aggregates, LeaveOutContactOfFlatCellsOnly) {
   for (const Real h : {1.0, 0.01}) {
