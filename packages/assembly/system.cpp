@@ -141,7 +141,7 @@ void System::set_time(Real t, Real dt) {
     for (const auto& module : structure_.modules) {
       if (!module.loads) continue;
       module.loads->set_time(t, scaling_.values());
-      changes = changes || !module.loads->constant_load();
+      changes = changes || (module.declaration.linear && !module.loads->constant_load());
     }
   });
   const auto now = state(ghosts_.zero());

@@ -75,10 +75,10 @@ LinearReport CondensedSolve::solve_by(const Solve& solve, const BlockVector& b, 
 }
 
 /// Solves with updated factors or, if they are not accurate, with new ones.
-LinearReport CondensedSolve::solve_whole(const BlockVector& c, BlockVector& y, Real tolerance) {
+LinearReport CondensedSolve::solve_whole(const BlockVector& c, BlockVector& y, Real tolerance, Real accuracy) {
   if (follows_) {
     y = {rcp(new Vector(c.front()->getMap()))};
-    const auto report = updated_->solve(*c.front(), *y.front());
+    const auto report = updated_->solve(*c.front(), *y.front(), accuracy);
     if (report.converged) return report;
     updated_->give_up();
     set_up();
@@ -86,8 +86,8 @@ LinearReport CondensedSolve::solve_whole(const BlockVector& c, BlockVector& y, R
   return whole_.solve(c, y, tolerance);
 }
 
-LinearReport CondensedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
-  return solve_by([&](const BlockVector& c, BlockVector& y) { return solve_whole(c, y, tolerance); }, b, dx);
+LinearReport CondensedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance, Real accuracy) {
+  return solve_by([&](const BlockVector& c, BlockVector& y) { return solve_whole(c, y, tolerance, accuracy); }, b, dx);
 }
 
 LinearReport CondensedSolve::solve_part(Part part, const BlockVector& b, BlockVector& dx, Real tolerance) {

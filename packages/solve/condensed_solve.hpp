@@ -24,7 +24,9 @@ class CondensedSolve {
   void update();
 
   /// Computes dx = A^-1 b, [block], to the relative residual `tolerance`. Rows of constrained unknowns are dx_i = b_i.
-  LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance);
+  /// `accuracy`: relative residual with updated factors, see UpdatedFactors::solve().
+  LinearReport solve(const BlockVector& b, BlockVector& dx, Real tolerance, Real accuracy = 0);
+  bool follows() const { return follows_; }  ///< the last update() has updated factors instead of renewing them
 
   /// Blocks with Block::advected, or all others.
   enum class Part { advected, others };
@@ -44,7 +46,7 @@ class CondensedSolve {
   std::vector<int> blocks_of(Part part) const;
   LocalElimination::Status eliminate();
   void set_up();
-  LinearReport solve_whole(const BlockVector& c, BlockVector& y, Real tolerance);
+  LinearReport solve_whole(const BlockVector& c, BlockVector& y, Real tolerance, Real accuracy);
   using Solve = std::function<LinearReport(const BlockVector& c, BlockVector& y)>;
   LinearReport solve_by(const Solve& solve, const BlockVector& b, BlockVector& dx);
 

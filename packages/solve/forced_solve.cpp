@@ -54,7 +54,7 @@ Real ForcedSolve::accuracy_without_change(const BlockVector& b) {
 }
 
 LinearReport ForcedSolve::solve(const BlockVector& b, BlockVector& dx, Real tolerance) {
-  if (!solve_.forcing()) return solve_.solve(b, dx, tolerance);
+  if (!solve_.forcing()) return solve_.solve(b, dx, tolerance, solve_.follows() ? accuracy_without_change(b) : 0);
   const Real most = has_advected() ? accuracy_of_parts : next_accuracy * first_accuracy;
   const Real state_accuracy = std::max(tolerance, std::min(most, accuracy_without_change(b)));
   auto& globalisation = problem_.globalisation();

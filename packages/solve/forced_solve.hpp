@@ -15,6 +15,7 @@ namespace sprekk::solve {
 ///   Eisenstat and Walker 1996, choice 2) and 0.01 tolerance / e_k (as Kelley 1995, 6.3), at most the second accuracy,
 ///   or 1e-8 with advected blocks. e is the largest measure of convergence. In the first iteration the ratio is 0, or 1
 ///   with advected blocks, whose rows are not linear.
+/// - Direct solver: updated factors have the second kind of accuracy, see UpdatedFactors::solve().
 /// Refers to its arguments. All members are collective.
 class ForcedSolve {
  public:

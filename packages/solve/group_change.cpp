@@ -149,6 +149,18 @@ void GroupChange::add_product(const std::vector<Real>& G, std::vector<Real>& res
   }
 }
 
+void GroupChange::take_solution(const BlockVector& z) {
+  coefficients_.assign(rows_.size(), 0);
+  for (std::size_t b = 0; b < group_.blocks.size(); ++b) {
+    const int offset = group_.offset[b], n = problem_.blocks()[group_.blocks[b]].n_components;
+    const auto value = z[group_.blocks[b]]->getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const Real* row = &dense0_[(rows_[k].entity * m_ + rows_[k].component) * m_ + offset];
+      for (int j = 0; j < n; ++j) coefficients_[k] += row[j] * value(rows_[k].entity * n + j, 0);
+    }
+  }
+}
+
 void GroupChange::expand(const std::vector<Real>& s, Vector& c) const {
   c.putScalar(0);
   for (std::size_t b = 0; b < group_.blocks.size(); ++b) {

@@ -42,6 +42,10 @@ class GroupChange {
   void add_product(const std::vector<Real>& G, std::vector<Real>& result) const;
   const RCP<const Map>& map() const { return map_; }  ///< unknowns of a with an entry in Q
 
+  /// Receives A_zz^-1 b_z of a right side b [block]; then b_z = A_zz E coefficients() if b_z is zero in other rows.
+  void take_solution(const BlockVector& z);
+  const std::vector<Real>& coefficients() const { return coefficients_; }  ///< [chosen row here]
+
   /// Computes c = U s for s [chosen row here]. Collective.
   void expand(const std::vector<Real>& s, Vector& c) const;
 
@@ -72,6 +76,7 @@ class GroupChange {
   std::vector<Real> Q_;                // [rows: columns of the entity]
   std::vector<std::size_t> Q_start_;   // [row]
   std::vector<Real> inverse_;          // [row, m] columns of A_zz0^-1 E
+  std::vector<Real> coefficients_;     // [row] of a right side
 };
 
 }  // namespace sprekk::solve

@@ -287,6 +287,7 @@ BlockVector LocalElimination::reduce(const BlockVector& b) const {
   for (std::size_t i = 0; i < b.size(); ++i) s[i]->update(1, *b[i], -1);
   for (const auto& group : plan_.groups) {
     apply_inverse(group, s);
+    if (change_) change_->take_solution(s);
     for (int a : plan_.remaining)
       for (int z : group.blocks)
         if (!(*matrix_)(a, z).is_null()) (*matrix_)(a, z)->apply(*s[z], *s[a], Teuchos::NO_TRANS, -1, 1);

@@ -7,7 +7,6 @@ namespace sprekk::solve {
 
 namespace {
 
-constexpr Real aim = 0.8;                           // relative to the tolerance
 constexpr Real max_shrink = 0.1, min_shrink = 0.5;  // relative to the rejected length
 constexpr Real shorter = 0.9;                       // largest length after a rejection, relative to the rejected one
 constexpr Real same = 1e-14;                        // relative round-off of times
@@ -36,7 +35,7 @@ StepControl::Verdict StepControl::judge(Real dt, const fields::StepErrors& error
     if (options_.tolerance && error.order == fields::StepError::unknown) factor = std::min<Real>(factor, 1);
     if (!options_.tolerance || !(error.value > 0)) continue;
     worst = std::max(worst, error.value / *options_.tolerance);
-    factor = std::min(factor, std::pow(aim * *options_.tolerance / error.value, 1 / error.order));
+    factor = std::min(factor, std::pow(options_.aim * *options_.tolerance / error.value, 1 / error.order));
   }
   const bool helped = rejected_dt_ == 0 || dt > 0.8 * rejected_dt_ || worst < 0.8 * worst_;
   const bool can_be_shorter = options_.smallest <= shorter * dt, too_many = n_rejected_ == max_rejections;
@@ -82,7 +81,7 @@ void StepControl::resume(const Memory& memory) {
 }
 
 void StepControl::shorten(Real dt, Real bend) {
-  const Real factor = std::sqrt(aim * options_.tolerance.value_or(bend) / bend);
+  const Real factor = std::sqrt(options_.aim * options_.tolerance.value_or(bend) / bend);
   memory_.length = bounded(dt * std::clamp(factor, max_shrink, min_shrink));
 }
 

@@ -13,6 +13,7 @@ struct StepControlOptions {
   std::optional<int> iterations;  ///< required number of Newton iterations per step
   Real first = 1, smallest = 0, largest = 1;
   Real max_growth = 3;
+  Real aim = 0.8;  ///< errors that steps aim at, relative to the tolerance
 };
 
 /// Selection of step lengths. An error e of order p suggests the length dt (aim tolerance/e)^(1/p); the smallest

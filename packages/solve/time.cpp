@@ -72,7 +72,8 @@ StepControlOptions Time::control(bool rates, bool evolves) const {
           .first = std::min(first_step.value_or(first * all), largest),
           .smallest = std::min(smallest_step.value_or((evolves ? 1e-13 : 1e-9) * all), largest),
           .largest = largest,
-          .max_growth = scheme == "BDF2" ? 2.28 : 3};  // steps may be 1.05 times longer to meet a time
+          .max_growth = scheme == "BDF2" ? 2.28 : 3,  // steps may be 1.05 times longer to meet a time
+          .aim = evolves ? 0.5 : 0.8};                // errors that grow with the rate would reject many steps
 }
 
 std::vector<Real> Time::times() const {

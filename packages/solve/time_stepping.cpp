@@ -129,7 +129,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       report.floating = problem_.globalisation().floating();
       if (placements == max_placements && !report.floating.empty())
         report.floating += fmt::format(" (after {} attempts its position may be inaccurate)", placements);
-      if (options_.predicts) predictor_.add(x, at.x(), end, end - report.time);
+      if (options_.predicts) predictor_.add(x, at.x(), report.time, end);
       fields::copy(at.x(), x);
       committed = at;
       done += size;

@@ -8,8 +8,8 @@
 namespace sprekk::solve {
 namespace {
 
-constexpr Real enough = 1e-9;      // relative residual
-constexpr Real max_numbers = 1e9;  // of G and of I - Q G on all ranks
+constexpr Real min_residual = 1e-9, max_residual = 1e-4;  // required relative residual
+constexpr Real max_numbers = 1e9;                         // of G and of I - Q G on all ranks
 constexpr int max_refinements = 3, max_failures = 3;
 
 }  // namespace
@@ -88,29 +88,55 @@ bool UpdatedFactors::factor() {
   return base::on_all_ranks(*comm_, info == 0);
 }
 
+/// Returns s = (I - Q G)^-1 Q y on this rank, [chosen row here], for Q y [chosen row here].
+std::vector<Real> UpdatedFactors::solve_rows(std::vector<Real> Qy) const {
+  auto s = base::gather_over_ranks(*comm_, std::move(Qy));
+  const int n = change_.n_chosen();
+  int info = 0;
+  Teuchos::LAPACK<int, Real>().GETRS('T', n, 1, lu_.data(), n, pivot_.data(), s.data(), n, &info);
+  return {s.begin() + change_.first(), s.begin() + change_.first() + change_.n_here()};
+}
+
+/// Computes x = J^-1 b: x = y + J_0^-1 U s with y = J_0^-1 b.
 void UpdatedFactors::apply_inverse(const Vector& b, Vector& x) const {
   const auto inverse = solver_->preconditioner();
   inverse->apply(b, x);
   Vector needed(change_.map());
   needed.doImport(x, *import_, Tpetra::INSERT);
-  auto s = base::gather_over_ranks(*comm_, change_.product(needed.getLocalViewHost(Tpetra::Access::ReadOnly).data()));
-  const int n = change_.n_chosen();
-  int info = 0;
-  Teuchos::LAPACK<int, Real>().GETRS('T', n, 1, lu_.data(), n, pivot_.data(), s.data(), n, &info);
+  const auto s = solve_rows(change_.product(needed.getLocalViewHost(Tpetra::Access::ReadOnly).data()));
   Vector U(b.getMap()), more(b.getMap());
-  change_.expand({s.begin() + change_.first(), s.begin() + change_.first() + change_.n_here()}, U);
+  change_.expand(s, U);
   inverse->apply(U, more);
   x.update(1, more, 1);
 }
 
-LinearReport UpdatedFactors::solve(const Vector& b, Vector& x) {
+/// Computes x = J_0^-1 U (s - c) if b = -U c except for `accuracy` |b|, as after the first of Newton's iterations,
+/// which solves all linear rows. G then replaces the first solve with J_0. Otherwise returns false.
+bool UpdatedFactors::apply_to_rows(const Vector& b, Vector& x, Real accuracy) const {
+  auto c = change_.coefficients();
+  Vector U(b.getMap());
+  change_.expand(c, U);
+  U.update(1, b, 1);
+  if (!(U.norm2() <= accuracy * b.norm2())) return false;
+  const auto all = base::gather_over_ranks(*comm_, c);
+  std::vector<Real> y(base::n_local_elements(*change_.map()), 0);
+  for (std::size_t i = 0; i < y.size(); ++i)
+    for (std::size_t j = 0; j < all.size(); ++j) y[i] -= G_[i * all.size() + j] * all[j];
+  const auto s = solve_rows(change_.product(y.data()));
+  for (std::size_t k = 0; k < c.size(); ++k) c[k] = s[k] - c[k];
+  change_.expand(c, U);
+  solver_->preconditioner()->apply(U, x);
+  return true;
+}
+
+LinearReport UpdatedFactors::solve(const Vector& b, Vector& x, Real accuracy) {
+  const Real enough = std::clamp(accuracy, min_residual, max_residual);
   LinearReport report;
-  report.iterations = 1;
   Vector r(b, Teuchos::Copy), dx(x.getMap());
   x.putScalar(0);
   report.residual = 1;
-  for (int k = 0; k <= max_refinements && !(report.residual <= enough); ++k) {
-    apply_inverse(r, dx);
+  for (int k = 0; k <= max_refinements && !(report.residual <= enough); report.iterations = ++k) {
+    if (k > 0 || !apply_to_rows(b, dx, enough / 2)) apply_inverse(r, dx);
     x.update(1, dx, 1);
     report.residual = relative_residual(*J_, b, x, r);
   }

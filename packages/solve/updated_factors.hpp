@@ -22,8 +22,9 @@ class UpdatedFactors {
   void restart(const LinearSolver& solver);
   /// Follows a change of J by its group. Returns whether solves are possible without new factors.
   bool follow();
-  /// Computes x = J^-1 b to the relative residual 1e-9 at least. Not converged: new factors are necessary.
-  LinearReport solve(const Vector& b, Vector& x);
+  /// Computes x = J^-1 b for the last b that the elimination has reduced, to the relative residual `accuracy`, between
+  /// 1e-9 and 1e-4. Each refinement is an iteration. Not converged: new factors are necessary.
+  LinearReport solve(const Vector& b, Vector& x, Real accuracy);
   /// Discards G, for example after a solve that has not converged.
   void give_up();
 
@@ -31,7 +32,9 @@ class UpdatedFactors {
   bool pays() const;
   void compute_responses();
   bool factor();
+  std::vector<Real> solve_rows(std::vector<Real> Qy) const;
   void apply_inverse(const Vector& b, Vector& x) const;
+  bool apply_to_rows(const Vector& b, Vector& x, Real accuracy) const;
 
   RCP<const Comm> comm_;
   GroupChange& change_;

@@ -56,6 +56,7 @@ class BulkMomentum final : public assembly::Module,
   void bind(const assembly::Context& context) override {
     mesh_ = context.mesh();
     size_ = mesh::largest_extent(*mesh_);
+    initial_size_ = largest_initial_stress();
     op_ = std::make_unique<Op>(Op{context.geometry(), assembly::to_device(parameters_.elasticity.values, "material"),
                                   assembly::material_numbers(context.geometry(), parameters_.elasticity.number)});
     displacement_ = context.field("displacement");
@@ -127,7 +128,7 @@ class BulkMomentum final : public assembly::Module,
   /// Stress scale: largest of traction, initial stress at cell centres, and body force times the size of the domain.
   /// The body force is evaluated at the first node of each cell.
   assembly::Scales loads(Real t) const override {
-    Real largest = 0;
+    Real largest = initial_size_;
     for (const auto& traction : parameters_.tractions)
       for (const auto& face : mesh_->boundary_faces)
         if (traction.applies_to(*mesh_, face))
@@ -136,15 +137,11 @@ class BulkMomentum final : public assembly::Module,
                                           for (int i = 0; i < dim; ++i)
                                             largest = std::max(largest, std::abs(at(i, x, t)));
                                         });
-    if (parameters_.body_force.empty() && parameters_.initial_stress.empty()) return {{"stress", largest}};
     Real force = 0;
-    for (LocalIndex c = 0; c < mesh_->n_cells(); ++c) {
+    for (LocalIndex c = 0; c < mesh_->n_cells() && !parameters_.body_force.empty(); ++c) {
       std::array<Real, 3> x{};
       std::copy_n(mesh_->coordinates.begin() + mesh_->cells[c * n] * dim, dim, x.begin());
       for (int i = 0; i < dim; ++i) force = std::max(force, std::abs(parameters_.body_force(i, c, x, t)));
-      if (parameters_.initial_stress.empty()) continue;
-      for (const auto& component : parameters_.initial_stress.of_cell(*mesh_, c))
-        largest = std::max(largest, std::abs(component(mesh::cell_centre(*mesh_, c), 0)));
     }
     return {{"stress", std::max(largest, force * size_)}};
   }
@@ -198,6 +195,14 @@ class BulkMomentum final : public assembly::Module,
     for (LocalIndex c = 0; c < mesh_->n_owned_cells; ++c)
       for (int k = 0; k < 3; ++k) values[6 * c + k] -= p(c);
     return values;
+  }
+
+  Real largest_initial_stress() const {
+    Real largest = 0;
+    for (LocalIndex c = 0; c < mesh_->n_cells() && !parameters_.initial_stress.empty(); ++c)
+      for (const auto& component : parameters_.initial_stress.of_cell(*mesh_, c))
+        largest = std::max(largest, std::abs(component(mesh::cell_centre(*mesh_, c), 0)));
+    return largest;
   }
 
   bool has_constant_loads() const {
@@ -331,6 +336,7 @@ class BulkMomentum final : public assembly::Module,
   int displacement_ = -1, tip_displacement_ = -1, solid_pressure_ = -1;
   bool loaded_ = false, split_ = false;  // split_: has a solid pressure
   Real size_ = 0;                        // largest extent of the domain, m
+  Real initial_size_ = 0;                // largest component of the initial stress on this rank, Pa
   std::unique_ptr<Op> op_;
   std::unique_ptr<assembly::Assembler<Op>> cells_;
   assembly::Load load_, carried_;  // N
