@@ -82,12 +82,13 @@ class FractureFlow final : public assembly::Module,
     flow_.add_jacobian(state, J);
     outflow_.add_jacobian(state, J);
   }
-  /// Computes hydraulic apertures. `widest`: at least open_.
+  /// Computes hydraulic apertures; of sealed faces that when they open. `widest`: at least open_.
   void coefficients(const assembly::State& state, bool widest, std::vector<Real>& values) const override {
     if (!widens_) return;
     const auto widening = base::to_host(state.x[widening_]);
     for (std::size_t f = 0; f < values.size(); ++f)
-      values[f] = std::max(parameters_.faces[f].along.hydraulic_aperture(widening(f)), widest ? open_ : 0);
+      values[f] = std::max({parameters_.faces[f].along.hydraulic_aperture(widening(f)),
+                            parameters_.faces[f].along.minimum, widest ? open_ : 0});
   }
   bool symmetric(const assembly::State&) const override { return is_linear(); }
 

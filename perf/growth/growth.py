@@ -1,95 +1,132 @@
-"""Stress intensity factors: errors against exact solutions, and orders of convergence.
+"""Fractures driven by a fluid: errors against similarity solutions between viscosity and toughness.
 
-Each row is a run of a crack on a mesh. The error is that of K_I, K_II and K_III together, relative to their norm, the
-largest of all tips. The order is that to the coarser mesh before. The last line gives the number of failures, the
-largest errors of the finest meshes of order 2 and 1, and the smallest order of convergence of the plane cases with order
-1."""
+Rows in plane strain are the growth of half of a fracture at one dimensionless toughness Kd, on a mesh with a number of
+faces along the wing at the end. Strength and residual aperture follow from the opening near the tip, see README.md. The
+last row is a quarter of a circular fracture in 3D, filled with a nearly inviscid fluid. Errors compare with the solution
+for the same volume at the end. The last line gives the number of failed runs, the largest error of length or radius on
+the finest meshes, the median of the Newton iterations of all steps, and the number of meshes after the first."""
 import math
+from functools import partial
 
+import numpy as np
+
+from perf.cohesive import meshes
+from perf.cohesive.cohesive import PLANE, broken, rock, volume, zone_of
 from perf.common import options as common
 from perf.common import program, scene_file, table
-from perf.growth import scenes
-from perf.verification import meshes
+from perf.growth import exact, penny
 
-COLUMNS = {"row": "", "cells": "d", "tips": "d", "computed K": ".4e", "exact value": ".4e", "error": ".2%", "of jump": ".2%", "order": ".2f", "seconds": ".1f"}
-BOUNDS = {"failures": 0, "worst_intensity": 0.005, "worst_of_order_1": 0.02, "smallest_order": (1, 0.8)}
-FORMATS = {"worst_intensity": ".4f", "worst_of_order_1": ".4f", "smallest_order": ".2f"}
-PLATES = {"between rollers": (scenes.between_rollers, {1: (8, 16, 32), 2: (4, 8)}),
-          "double cantilever beam": (scenes.double_cantilever, {1: (80, 160), 2: (40, 80)}),
-          "edge crack": (scenes.edge_crack, {1: (16, 32), 2: (8, 16)}),
-          "Williams' field": (scenes.williams, {1: (8, 16, 32), 2: (4, 8)})}
-
-# Edges of the circular crack: largest, at the front, growth per length.
-CIRCLE = {1: ((0.8, 0.1, 0.35), (0.6, 0.05, 0.25)), 2: ((1, 0.1, 0.5), (1, 0.05, 0.5))}
-
-
-def intensities(run):
-    """K of each tip from the integral and from the jump, [tip][mode]. A tip without is a failure of the run."""
-    found = run.steps[-1]["stress_intensity"]
-    modes = [name for name in ("K_I", "K_II", "K_III") if name in found]
-    if any(K is None for name in modes for kind in ("", "_of_jump") for K in found[name + kind]):
-        raise program.Failed("a tip has no stress intensity factor")
-    return [list(zip(*(found[name + kind] for name in modes))) for kind in ("", "_of_jump")]
+BOUNDS = {"failures": 0, "worst_radius": 0.01, "newton_median": 6, "remeshing": 0}
+QUICK_BOUNDS = {**BOUNDS, "worst_radius": 0.03, "newton_median": 7}
+FORMATS = {"worst_radius": ".4f", "newton_median": ".3g"}
+COLUMNS = {"row": "", "cells": "d", "faces": "d", "strength": ".3g", "length": ".2%", "opening": ".2%", "pressure": ".2%", "order": ".2f",
+           "Newton": ".3g", "most": "d", "cuts": "d", "seconds": ".1f"}
+FACES = (20, 40)  # along a wing at the end
+ENERGY, LENGTH, END, NOTCH = 125.0, 10.0, 100.0, 0.1  # J/m^2, m, s, of the length
+ZONE = 3       # faces of the process zone
+SOFTENED = 0.733  # opening at the end of the zone over that of the sharp tip at this distance, linear softening
+OPENED = 0.5   # residual aperture over the opening at one face behind the tip
+STEPS = {1: 0.0, 4: 0.6}  # per face: from this part of the final length
+FAR = 12       # half-width of the body over the length
+LAG = 0.135    # of the broken length behind a sharp tip over 0.8 E' G/T^2, without viscosity
+RADIUS, CIRCLE = 10.0, (6, 8)  # of the circular fracture, m, and its faces along a radius
 
 
-def error(tips, exact):
-    """Largest error of |K_I|, |K_II| and |K_III| of tips, relative to the norm of the exact values."""
-    exact = [*exact, 0, 0][:len(tips[0])]
-    return max(math.dist(map(abs, tip), exact) for tip in tips) / math.hypot(*exact)
+def is_step(faces, part):
+    """Whether a step ends where the front of the exact solution has passed `faces` faces, at this part of its way."""
+    per_face = max(n for n, begin in STEPS.items() if part > begin - 1e-9)
+    return abs(faces * per_face - round(faces * per_face)) < 1e-6
 
 
-def plate_runs(options):
-    """Yields (case, name, scene, entries, exact) of plates."""
-    for case, (scene_of, levels) in PLATES.items():
-        for order, densities in levels.items():
-            for density in densities[:2] if options.quick else densities:
-                scene, exact = scene_of(density, order)
-                name = f"{case}, order {order}"
-                file = options.output / f"{name} {density}.xml".replace(" ", "_").replace(",", "").replace("'", "")
-                scene_file.save(scene, file, case)
-                yield name, file, [], exact
+def scene_of(fracture, faces, file):
+    """Writes the scene of a fracture with `faces` along its wing at the end; returns strength, Pa, and notch, m."""
+    size, notch = LENGTH / faces, round(NOTCH * faces) * LENGTH / faces
+    strength = 2 * ENERGY / (SOFTENED * fracture.tip_opening(ZONE * size))
+    meshes.write(file.with_suffix(".msh"), meshes.graded(size, 1.1 * LENGTH, FAR * LENGTH, 1.4), meshes.graded(size, 2 * size, FAR * LENGTH, 1.4))
+    fronts = [x for x in np.arange(notch, LENGTH + size / 8, size / max(STEPS)) if is_step((x - notch) / size, x / LENGTH)]
+    times = END * (np.array(fronts) / LENGTH) ** 1.5
+    scene_file.save({
+        "Mesh file": {"path": file.with_suffix(".msh").name, "fractures": {"growing": {}}}, "Bulk": {"material": "granite"},
+        "Materials": rock(strength, ENERGY, **{"residual aperture": OPENED * fracture.tip_opening(size)}),
+        "Flow": {"viscosity": fracture.viscosity / 12, "compressibility": 1e-11,
+                 "Wells": {"injector": {"points": [size / 2, 0.0], "radius": size / 5, "rate": fracture.rate / 2}}},
+        "Fractures": {"growing": {"material": "bonded joint", "unbroken": f"x > {notch}"}},
+        "Boundary conditions": {
+            **{name: {"boundary": name, "displacement": [0.0, "free"]} for name in ("west upper", "west lower", "east")},
+            "south": {"boundary": "south", "displacement": ["free", 0.0]}},
+        "Time": {"schedule": [*(float(part * times[0]) for part in (0.25, 0.5, 0.75)), *(float(t) for t in times)]}, "Output": {"vtu": False}}, file, "Growth by a viscous fluid.")
+    return strength, notch
 
 
-def crack_runs(options):
-    """Yields the runs of scenes in xml/verification: mode II with friction, a circular crack, mode III with friction."""
-    K = 1e-3 * math.sqrt(math.pi)
-    requested = "Fractures.crack.stress intensity=true"
-    for order in (1, 2):
-        for refinements in (0, 1):
-            entries = [requested, f"Mesh file.order={order}", f"Mesh file.refinements={refinements}"]
-            yield f"sliding with friction, order {order}", "verification/sneddon_shear.xml", entries, (0, K)
-        for size in CIRCLE[order][:1 if options.quick else None]:
-            try:
-                mesh = meshes.penny(options.output, *size)
-            except meshes.NoGmsh as reason:
-                print(f"no circular crack: {reason}")
-                break
-            entries = [requested, f"Mesh file.order={order}", f"Mesh file.path={mesh}"]
-            yield f"circular crack, order {order}", "verification/penny.xml", entries, (2e-3 / math.sqrt(math.pi),)
-    for n in (16,) if options.quick else (16, 32):
-        yield "tearing with friction, order 1", "verification/tearing_3d.xml", [requested, f"Mesh.cells={{{n}, 4, {n}}}"], (0, 0, K)
+class Row:
+    """Result of a run. `errors`: of length or radius, of opening and pressure in the middle."""
+
+    def __init__(self, name, faces, strength, run, errors):
+        self.name, self.faces, self.strength, self.newton, self.errors = name, faces, strength, run.newton, errors
+        self.remeshings = max(len(run.results.get("accuracy", {}).get("meshes", [])) - 1, 0)
+        self.run = [float(np.median(run.newton)), max(run.newton), run.cuts, run.seconds]
+        self.cells = run.cells
+
+    def values(self, coarser):
+        """Columns; the order is that of the opening."""
+        order = math.log(abs(coarser.errors[1] / self.errors[1])) / math.log(self.faces / coarser.faces) if coarser else None
+        return [self.name, self.cells, self.faces, self.strength, *self.errors, order, *self.run]
+
+
+def errors(computed, known):
+    return [one / other - 1 for one, other in zip(computed, known)]
+
+
+def plane(options, toughness, faces):
+    fracture = exact.Fracture(toughness, PLANE, ENERGY, LENGTH, END)
+    file = options.output / f"plane_{toughness}_{faces}.xml"
+    strength, notch = scene_of(fracture, faces, file)
+    run = program.succeeded(options.binary, file, file.with_suffix(""), options.set)
+    last, fields = run.steps[-1], run.steps[-1]["fractures"]["growing"]
+    computed = notch + broken(last), fields["max_opening"], fields["max_fracture_pressure"]
+    return Row(f"plane strain, Kd = {toughness}", faces, strength, run, errors(computed, fracture.at(2 * volume(last) / fracture.rate)))
+
+
+def circle(options, faces):
+    """Quarter of a circular fracture. The radius is that of the broken area plus the lag of the zone."""
+    K, size = math.sqrt(ENERGY * PLANE), RADIUS / faces
+    opening = 4 * math.sqrt(2 / math.pi) * K / PLANE * np.sqrt([size, ZONE * size])  # of a sharp tip
+    strength = 2 * ENERGY / (SOFTENED * float(opening[1]))
+    file, rate = options.output / f"circle_{faces}.xml", 8 / 3 * math.sqrt(math.pi) * K * RADIUS**2.5 / PLANE / 4 / END
+    notch = penny.scene(file, rock(strength, ENERGY, **{"residual aperture": 0.05 * float(opening[0])}), RADIUS, faces, rate, END, far=6)
+    run = program.succeeded(options.binary, file, file.with_suffix(""), options.set)
+    last, fields = run.steps[-1], run.steps[-1]["fractures"]["growing"]
+    radius = math.sqrt(4 * (penny.area(notch, size) + broken(last)) / math.pi) + LAG * zone_of(strength, ENERGY)
+    return Row("circle, toughness", faces, strength, run,
+               errors((radius, fields["max_opening"], fields["max_fracture_pressure"]), penny.exact(4 * volume(last), PLANE, K)))
+
+
+def cases(options):
+    """Yields (name, function that returns a Row)."""
+    for toughness in (1,) if options.quick else exact.VALUES:
+        for faces in (20,) if options.quick else FACES:
+            yield f"plane strain, Kd = {toughness}, {faces} faces", partial(plane, options, toughness, faces)
+    for faces in () if options.quick else CIRCLE:
+        yield f"circle, toughness, {faces} faces", partial(circle, options, faces)
+
+
+def summary(rows, failures):
+    finest = {row.name: row for row in rows}.values()
+    iterations = [count for row in rows for count in row.newton]
+    return {"failures": failures, "worst_radius": max((abs(row.errors[0]) for row in finest), default=math.nan),
+            "newton_median": float(np.median(iterations)) if iterations else math.nan, "remeshing": sum(row.remeshings for row in rows)}
 
 
 def main(words):
     options = common.parser("growth", __doc__).parse_args(words)
-    shown, failed, last = table.Table(COLUMNS, 36), [], {}
-    for name, scene, entries, exact in common.matching(options, [*plate_runs(options), *crack_runs(options)], lambda run: run[0]):
+    shown, rows, failed = table.Table(COLUMNS, 26), [], []
+    for name, measured in common.matching(options, list(cases(options)), lambda case: case[0]):
         try:
-            run = program.succeeded(options.binary, scene, options.output / "run", [*entries, "Output.vtu=false", *options.set])
-            tips, of_jump = intensities(run)
+            row = measured()
         except program.Failed as reason:
             failed.append(f"failed: {name}: {reason}")
             print(failed[-1], flush=True)
             continue
-        size, here = run.cells ** (-1 / run.results["mesh"]["dimension"]), error(tips, exact)
-        coarser = last.get(name)
-        order = math.log(coarser[1] / here) / math.log(coarser[0] / size) if coarser else None
-        last[name] = (size, here, order)
-        main_mode = max(range(len(exact)), key=lambda mode: abs(exact[mode]))
-        shown.add([name, run.cells, len(tips), max((abs(tip[main_mode]) for tip in tips)), exact[main_mode], here, error(of_jump, exact), order, run.seconds])
-    def worst(order):
-        return max((one[1] for name, one in last.items() if name.endswith(order)), default=math.nan)
-    values = {"failures": len(failed), "worst_intensity": worst("order 2"), "worst_of_order_1": worst("order 1"),
-              "smallest_order": min((one[2] for name, one in last.items() if one[2] and name.endswith("order 1") and name.split(",")[0] in PLATES), default=math.nan)}
-    bounds = {"failures": 0, "worst_intensity": 0.02, "worst_of_order_1": 0.08} if options.quick else BOUNDS
-    return table.finish(options, shown, values, FORMATS, bounds, failed)
+        shown.add(row.values(next((one for one in rows if one.name == row.name), None)))
+        rows.append(row)
+    return table.finish(options, shown, summary(rows, len(failed)), FORMATS, QUICK_BOUNDS if options.quick else BOUNDS, failed)

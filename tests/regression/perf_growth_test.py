@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Measurement perf/growth: perf_growth_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or SciPy.
+
+Limits of the similarity solutions, the rule for the strength, and the errors of a coarse run."""
+import math
+import statistics
+import sys
+import unittest.mock
+
+import program
+from program import ProgramTest, main
+
+try:
+    import scipy  # noqa: F401
+    from perf.common import options as common
+    from perf.growth import exact, growth
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+
+class Growth(ProgramTest):
+    def fracture(self, toughness):
+        return exact.Fracture(toughness, growth.PLANE, growth.ENERGY, growth.LENGTH, growth.END)
+
+    def test_similarity_solutions_have_the_limits_of_toughness_and_viscosity(self):
+        for toughness, tolerance in ((4, 0.02), (6, 4e-3)):  # deviations of the asymptotic expansion
+            known, K = self.fracture(toughness), math.sqrt(growth.ENERGY * growth.PLANE)
+            length, opening, pressure = known.at(growth.END)
+            self.assertAlmostEqual(length, growth.LENGTH, places=5)
+            sharp = (growth.PLANE * known.rate * growth.END / (2 * math.sqrt(math.pi) * K)) ** (2 / 3)
+            self.assertAlmostEqual(length / sharp, 1, delta=tolerance)
+            self.assertAlmostEqual(opening / (4 * K * math.sqrt(length / math.pi) / growth.PLANE), 1, delta=5 * tolerance)
+            self.assertAlmostEqual(pressure / (K / math.sqrt(math.pi * length)), 1, delta=15 * tolerance)
+        nearly_viscous = exact.VALUES[0.25]
+        for value, zero in zip(nearly_viscous, (0.6154113, 1.1258346, 0.544817)):  # Kd = 0
+            self.assertAlmostEqual(value / zero, 1, delta=5e-4)
+
+    def test_viscosity_reduces_the_strength_and_toughness_alone_has_a_zone_of_three_faces(self):
+        for toughness in exact.VALUES:
+            known, size = self.fracture(toughness), 1e-5 if toughness > 2 else 1
+            strength = 2 * growth.ENERGY / (growth.SOFTENED * known.tip_opening(growth.ZONE * size))
+            zone = 0.914 * 0.8 * growth.PLANE * growth.ENERGY / strength**2  # of a bond under toughness alone
+            if toughness > 2:
+                self.assertAlmostEqual(zone / (growth.ZONE * size), 1, delta=0.02)
+            else:
+                self.assertGreater(zone, 1.1 * growth.ZONE * size)
+
+    def test_a_coarse_mesh_grows_as_the_exact_fracture(self):
+        self.assertEqual(growth.main(["--quick", "--output", str(self.folder), "--binary", str(program.PROGRAM)]), 0)
+
+    def test_steps_in_which_a_face_opens_take_few_iterations(self):
+        options = common.parser("growth", "").parse_args(["--output", str(self.folder), "--binary", str(program.PROGRAM)])
+        with unittest.mock.patch.object(growth, "STEPS", {1: 0.0}):
+            row = growth.plane(options, 1, 20)
+        self.assertLessEqual(statistics.median(row.newton), 7)
+        self.assertLess(abs(row.errors[0]), 0.03)
+
+
+if __name__ == "__main__":
+    main()
