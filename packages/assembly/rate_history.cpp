@@ -88,7 +88,7 @@ std::vector<std::pair<fields::Field, View<Real**>>> RateHistory::histories() con
   for (std::size_t b = 0; b < gains_.size(); ++b) {
     const auto& field = structure_.layouts[b].field();
     if (gains_[b].extent(0) > 0)
-      all.push_back({{"gain of " + field.name, field.entity, field.n_components, ""}, gains_[b]});
+      all.push_back({{"gain of " + field.name, field.entity, field.n_components, "", true}, gains_[b]});
   }
   return all;
 }
