@@ -33,8 +33,8 @@ class Adaptation {
   void prepare(Scene& scene, RCP<const Comm> comm);
 
   /// Returns the cells to be bisected before the step from `begin` is repeated, on all ranks; empty: the errors of the
-  /// step meet the tolerances, a limit is reached, or the mesh is not refined during the run. Errors of earlier steps
-  /// are not included.
+  /// step meet the tolerances, a limit is reached, or the mesh is not refined during the run. In a repeated step, the
+  /// errors include the bounds from the previous mesh. Errors of earlier steps are not included.
   std::vector<GlobalIndex> cells_for_step(Model& model, Real begin);
 
   /// Evaluates a completed run. The spatial error of a quantity is the maximum of its estimate and of bounds from the
@@ -55,16 +55,17 @@ class Adaptation {
   void refine(const Comm& comm);
 
  private:
-  /// Results of one run.
+  /// Results of one run, or of one attempt of a step that is repeated.
   struct Run {
     GlobalIndex cells;
     Real seconds;  ///< since the first run began
+    Real begin;    ///< of the run or step, s
     std::map<std::string, estimate::Estimate> estimates;
   };
 
-  void record(const Model& model, const estimate::Goals& goals);
+  void record(const Model& model, const estimate::Goals& goals, Real begin);
   void choose_steps(Scene scene, RCP<const Comm> comm);
-  Real space_error(const std::string& name) const;
+  Real space_error(const estimate::Estimate& now, const estimate::Estimate& before) const;
   std::vector<GlobalIndex> cells_to_halve(const Model& model, const estimate::Goals& goals) const;
   static std::vector<GlobalIndex> marked(const Model& model, const estimate::Goals& goals,
                                          const std::map<std::string, Real>& weights);

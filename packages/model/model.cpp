@@ -198,7 +198,7 @@ void Model::change(const Scene& changed) {
 }
 
 void Model::refine(const std::vector<GlobalIndex>& cells) {
-  SPREKK_CHECK(scene_.bisection, "{}: refinement during a run requires the section \"Accuracy\"", scene_.origin);
+  SPREKK_CHECK(scene_.bisection, "{}: the mesh of a model without Scene::bisection cannot be refined", scene_.origin);
   const auto scope = timers_->scope("refinement");
   const auto comm = whole_mesh_->comm;
   std::vector<GlobalIndex> parent;  // on rank 0

@@ -10,7 +10,7 @@ DOUBLET = "accuracy/doublet_2d.xml"
 NETWORK = "flow/network_2d.xml"
 EXACT = 1.5e-3 * math.pi / 4  # mean slip, or opening, of the crack
 QUIET = "Output.vtu=false"
-FAULT, PLATE, SHUT_IN = "accuracy/fault_2d.xml", "accuracy/plate_2d.xml", "poro/shut_in_2d.xml"
+FAULT, PLATE = "accuracy/fault_2d.xml", "accuracy/plate_2d.xml"
 DURING = "Accuracy.refinement=during the run"
 RELATIVE_SLIP = ("Accuracy.quantities.fault slips.relative=0.03", "Accuracy.quantities.branch slips.absolute=1 mm")
 
@@ -160,11 +160,15 @@ class Accuracy(ProgramTest):
             values = [run["accuracy"]["quantities"][name]["value"] for run in (results, fine)]
             self.assertLess(abs(values[0] / values[1] - 1), 1.5 * 0.03, name)
 
-    def test_refines_during_adaptive_steps(self):
-        sets = [*goal("opening", relative=0.1), DURING, "Accuracy.cells=4000", "Time.tolerance=0.05", QUIET]
-        results = self.run_scene(SHUT_IN, *sets)
+    def test_refines_during_adaptive_steps_and_stages(self):
+        """At 40 s another pressure is prescribed at the drained side."""
+        sets = [QUIET, "Accuracy.quantities.outflow.relative=0.05", "Accuracy.quantities.force.relative=0.05", "Time.tolerance=0.05",
+                "Stages.refill.time=40", "Stages.refill.Boundary conditions.drained.pressure=1e6", DURING, "Mesh.cells={10, 1}"]
+        results = self.run_scene(PLATE, *sets)
         self.assertEqual(results["status"], "completed")
-        self.assertGreater(len(results["accuracy"]["meshes"]), 1)
+        self.assertGreater(len(results["accuracy"]["meshes"]), 2)
+        self.assertEqual([stage["name"] for stage in results["stages"]], ["refill"])
+        self.assertEqual(results["steps"][-1]["time"], 50)
 
     def test_refuses_in_words(self):
         good = goal("slip", relative=0.01)

@@ -120,7 +120,8 @@ INSTANTIATE_TEST_SUITE_P(All, RefinedCells,
                          [](const auto& one) { return fmt::format("{}{}", one.param.first, one.param.second); });
 
 /// With u = 0 at the old nodes and the enrichment q, the function is (rho^(1/2) - rho) q. At a new node the enrichment
-/// is rho^(1/2) q, with rho = 1/2 at the middle of an edge at the tip and 1 on the opposite side of the old cell.
+/// is rho^(1/2) q, with rho = 1/2 at the middle of an edge at the tip, 1 on the opposite side of the old cell, and 3/4
+/// between them.
 TEST(Refinement, KeepsTheSquareRootAtTips) {
   for (const std::string cell : {"triangle", "tetrahedron"}) {
     model::Model model(block(cell, 1, true), Tpetra::getDefaultComm());
@@ -133,7 +134,9 @@ TEST(Refinement, KeepsTheSquareRootAtTips) {
       const LocalIndex e = mesh.enriched[node];
       if (e < 0) continue;
       const Real root = q[e][0] / 1e-3;
-      EXPECT_TRUE(std::abs(root - 1) < 1e-12 || std::abs(root - std::sqrt(0.5)) < 1e-12) << root;
+      EXPECT_TRUE(std::abs(root - 1) < 1e-12 || std::abs(root - std::sqrt(0.5)) < 1e-12 ||
+                  std::abs(root - std::sqrt(0.75)) < 1e-12)
+          << root;
       n_middle += root < 0.9;
       for (int i = 0; i < mesh.dim(); ++i) {
         EXPECT_NEAR(q[e][i], root * 1e-3 * (i + 1), 1e-16);
@@ -144,35 +147,52 @@ TEST(Refinement, KeepsTheSquareRootAtTips) {
   }
 }
 
-/// Flow, heat and contact in deformable rock with fractures and wells.
+/// Flow, heat and contact in deformable rock with fractures and wells; in 3D with two fractures that cross.
 model::Scene doublet(bool flat, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides = {flat ? "Mesh.cells={20, 20}" : "Mesh.cells={5, 5, 5}", "Time.scheme=BDF2"};
+  std::vector<std::string> overrides = {flat ? "Mesh.cells={20, 20}" : "Mesh.cells={4, 4, 4}", "Time.scheme=BDF2"};
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return bisected_scene(flat ? "thm/doublet_2d.xml" : "thm/doublet_3d.xml", overrides);
+  if (flat) return bisected_scene("thm/doublet_2d.xml", overrides);
+  auto scene = bisected_scene("thm/doublet_3d.xml", overrides);
+  std::erase_if(scene.mesh.fractures, [](const auto& one) { return one.first != "injected" && one.first != "middle"; });
+  std::erase_if(scene.fractures, [&](const auto& one) { return scene.mesh.fractures.count(one.first) == 0; });
+  scene.mesh.fractures["injected"].lower_corner = {50, 50, 100};
+  scene.mesh.fractures["injected"].upper_corner = {150, 150, 100};
+  scene.mesh.fractures["middle"].lower_corner = {100, 50, 50};
+  scene.mesh.fractures["middle"].upper_corner = {100, 150, 150};
+  return scene;
 }
 
-/// Stored masses and energies since the start, from the storage terms of a step back to the initial state, and the
-/// storage increases of the last step. Collective.
-std::map<std::string, Real> stored(model::Model& model) {
+/// Sum and sum of magnitudes, by name.
+using Sums = std::map<std::string, std::array<Real, 2>>;
+
+/// Returns the stored masses and energies since the start, from the storage terms of a step back to the initial state,
+/// and the amounts in histories. Collective.
+Sums stored(model::Model& model) {
   constexpr Real dt = 1e6;
   auto& system = model.system();
   const auto start = system.initial();
   auto r = fields::create_like(start);
   system.set_time(model.time() + dt, dt);
-  std::map<std::string, Real> sums;
+  Sums sums;
+  const auto add = [&](const std::string& name, Real value) {
+    sums[name][0] += value;
+    sums[name][1] += std::abs(value);
+  };
   for (std::size_t m = 0; m < system.modules().size(); ++m) {
     if (!system.modules()[m].declaration.stores) continue;
     system.module_residual(static_cast<int>(m), start, r);
     for (std::size_t b = 0; b < r.size(); ++b) {
-      const auto& unknown = system.layouts()[b].field().name;
+      if (!system.blocks()[b].balance) continue;
       const auto rows = r[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
-      for (std::size_t k = 0; k < rows.extent(0); ++k) sums[unknown] += dt * rows(k, 0);
+      add(system.layouts()[b].field().name, 0);
+      for (std::size_t k = 0; k < rows.extent(0); ++k) add(system.layouts()[b].field().name, dt * rows(k, 0));
     }
   }
   for (const auto& [field, values] : system.histories(false)) {
-    if (!field.is_amount) continue;
+    if (!field.is_amount || field.name == "gain of displacement") continue;
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values);
-    for (std::size_t e = 0; e < host.extent(0); ++e) sums[field.name] += host(e, 0);
+    add(field.name, 0);
+    for (std::size_t e = 0; e < host.extent(0); ++e) add(field.name, host(e, 0));
   }
   for (auto& [name, sum] : sums) sum = base::sum_over_ranks(*system.comm(), sum);
   return sums;
@@ -186,20 +206,20 @@ TEST(Refinement, KeepsStoredMassAndEnergy) {
     refine(model);
     const auto after = stored(model);
     ASSERT_EQ(before.size(), after.size());
-    for (const char* name : {"pressure", "temperature", "gain of pressure", "gain of temperature"})
-      EXPECT_GT(std::abs(before.at(name)), 0) << name;
-    for (const auto& [name, sum] : before) EXPECT_NEAR(after.at(name), sum, 1e-10 * std::abs(sum)) << name << flat;
+    for (const char* name : {"pressure", "face pressure", "temperature", "gain of pressure", "gain of temperature"})
+      EXPECT_GT(before.at(name)[1], 0) << name;
+    for (const auto& [name, sum] : before) EXPECT_NEAR(after.at(name)[0], sum[0], 1e-10 * sum[1]) << name << flat;
     ASSERT_TRUE(model.step_to(5e6).converged);
   }
 }
 
-/// Histories and tractions of new faces are those of old faces; their integrals remain.
+/// Histories of new faces are those of old faces; their integrals remain, and those of tractions.
 TEST(Refinement, KeepsHistoriesOfFaces) {
   for (const bool flat : {true, false}) {
-    model::Model model(
-        doublet(flat, {"Materials.rough joint.damage=isotropic", "Materials.rough joint.damage length of friction=0.02",
-                       "Materials.rough joint.residual part of friction=0.5"}),
-        Tpetra::getDefaultComm());
+    const std::string joint = "Materials.rough joint.";
+    model::Model model(doublet(flat, {joint + "damage=isotropic", joint + "damage length of friction=0.02",
+                                      joint + "residual part of friction=0.5"}),
+                       Tpetra::getDefaultComm());
     for (const Real t : {1e8, 2e8}) ASSERT_TRUE(model.step_to(t).converged);
     std::vector<std::string> names = {"traction", "side bubble"};
     for (const auto& [field, values] : model.system().histories())
@@ -207,26 +227,30 @@ TEST(Refinement, KeepsHistoriesOfFaces) {
     ASSERT_GE(names.size(), 5);
     const auto summary = [&](const std::string& name) {
       const auto& mesh = model.mesh();
+      std::vector<Real> all;
+      std::array<Real, 2> integral{};
       const auto values = values_of(model, name);
-      std::vector<Real> all, sum(values.empty() ? 0 : values[0].size(), 0);
-      for (std::size_t f = 0; f < values.size(); ++f) all.insert(all.end(), values[f].begin(), values[f].end());
+      for (std::size_t f = 0; f < values.size(); ++f) {
+        all.insert(all.end(), values[f].begin(), values[f].end());
+        integral[0] += mesh.fracture_faces[f].area * values[f].back();
+        integral[1] += mesh.fracture_faces[f].area * std::abs(values[f].back());
+      }
       all = base::gather_over_ranks(*mesh.comm, all);
       std::sort(all.begin(), all.end());
       all.erase(std::unique(all.begin(), all.end()), all.end());
-      Real integral = 0;
-      for (std::size_t f = 0; f < values.size(); ++f) integral += mesh.fracture_faces[f].area * values[f].back();
       return std::pair(all, base::sum_over_ranks(*mesh.comm, integral));
     };
-    std::map<std::string, std::pair<std::vector<Real>, Real>> before;
+    std::map<std::string, std::pair<std::vector<Real>, std::array<Real, 2>>> before;
     for (const auto& name : names) before[name] = summary(name);
     refine(model);
     for (const auto& name : names) {
       const auto [values, integral] = summary(name);
-      EXPECT_EQ(values.size(), before[name].first.size()) << name;
-      for (std::size_t k = 0; k < std::min(values.size(), before[name].first.size()); ++k)
-        EXPECT_NEAR(values[k], before[name].first[k], 1e-14 * std::abs(values[k])) << name;
-      EXPECT_NEAR(integral, before[name].second, 1e-10 * std::abs(integral)) << name;
+      EXPECT_NEAR(integral[0], before[name].second[0], 1e-12 * integral[1]) << name;
+      if (name != "traction") {  // the initial traction is rounded
+        EXPECT_EQ(values, before[name].first) << name;
+      }
     }
+    EXPECT_GT(before["elastic-plastic jump: plastic jump"].second[1], 0);
   }
 }
 
