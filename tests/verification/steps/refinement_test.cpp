@@ -189,7 +189,7 @@ Sums stored(model::Model& model) {
     }
   }
   for (const auto& [field, values] : system.histories(false)) {
-    if (!field.is_amount || field.name == "gain of displacement") continue;
+    if (!field.is_amount) continue;
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values);
     add(field.name, 0);
     for (std::size_t e = 0; e < host.extent(0); ++e) add(field.name, host(e, 0));
@@ -218,9 +218,9 @@ TEST(Refinement, KeepsHistoriesOfFaces) {
   for (const bool flat : {true, false}) {
     const std::string joint = "Materials.rough joint.";
     model::Model model(doublet(flat, {joint + "damage=isotropic", joint + "damage length of friction=0.02",
-                                      joint + "residual part of friction=0.5"}),
+                                      joint + "residual part of friction=0.5", joint + "friction coefficient=0.25"}),
                        Tpetra::getDefaultComm());
-    for (const Real t : {1e8, 2e8}) ASSERT_TRUE(model.step_to(t).converged);
+    for (const Real t : {1e6, 3e6}) ASSERT_TRUE(model.step_to(t).converged);
     std::vector<std::string> names = {"traction", "side bubble"};
     for (const auto& [field, values] : model.system().histories())
       if (field.name.rfind("elastic-plastic jump: ", 0) == 0) names.push_back(field.name);
