@@ -144,6 +144,7 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   base::throw_errors(errors);
   refuse(refused_changes(before, prepared.value));
   prepared.value.is_continued = true;
+  prepared.value.bisection = scene_.bisection;
   physics::for_each_physics([&]<physics::HasChange P>(P) { P::Change::prepare(*whole_mesh_, before, prepared.value); });
   auto draft = drafted(std::move(prepared.value));
   std::vector<std::string> lines;

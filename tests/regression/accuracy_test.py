@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Error control by the section Accuracy: accuracy_test.py PROGRAM ROOT MPIEXEC"""
 import math
+import re
 import shutil
 
 from program import ProgramTest, main
@@ -10,7 +11,7 @@ DOUBLET = "accuracy/doublet_2d.xml"
 NETWORK = "flow/network_2d.xml"
 EXACT = 1.5e-3 * math.pi / 4  # mean slip, or opening, of the crack
 QUIET = "Output.vtu=false"
-FAULT, PLATE = "accuracy/fault_2d.xml", "accuracy/plate_2d.xml"
+FAULT, PLATE, TEARING = "accuracy/fault_2d.xml", "accuracy/plate_2d.xml", "verification/tearing_3d.xml"
 DURING = "Accuracy.refinement=during the run"
 RELATIVE_SLIP = ("Accuracy.quantities.fault slips.relative=0.03", "Accuracy.quantities.branch slips.absolute=1 mm")
 
@@ -162,13 +163,27 @@ class Accuracy(ProgramTest):
 
     def test_refines_during_adaptive_steps_and_stages(self):
         """At 40 s another pressure is prescribed at the drained side."""
+        scene = self.folder / "plate.xml"
+        scene.write_text(re.sub(r'.*name="steps".*', "", self.scene(PLATE).read_text()))
         sets = [QUIET, "Accuracy.quantities.outflow.relative=0.05", "Accuracy.quantities.force.relative=0.05", "Time.tolerance=0.05",
                 "Stages.refill.time=40", "Stages.refill.Boundary conditions.drained.pressure=1e6", DURING, "Mesh.cells={10, 1}"]
-        results = self.run_scene(PLATE, *sets)
+        results = self.run_scene(scene, *sets)
         self.assertEqual(results["status"], "completed")
         self.assertGreater(len(results["accuracy"]["meshes"]), 2)
         self.assertEqual([stage["name"] for stage in results["stages"]], ["refill"])
         self.assertEqual(results["steps"][-1]["time"], 50)
+        whole = self.run_scene(scene, *sets, "Accuracy.cells=10", output="coarse")
+        self.assertEqual(whole["mesh"]["cells"], 20)
+        self.assertIn("cells", whole["accuracy"]["ended"])
+
+    def test_refines_in_3d_during_the_run(self):
+        runs = [self.run_scene(TEARING, *goal("slip", relative=0.04), DURING, QUIET, "Time.steps=2", "Mesh.cells={8, 2, 8}", ranks=ranks) for ranks in (1, 2)]
+        for results in runs:
+            one = results["accuracy"]["quantities"]["goal"]
+            self.assertTrue(one["reached"])
+            self.assertGreater(results["mesh"]["cells"], 768)
+            self.assertLess(abs(one["value"] / (2e-3 * math.pi / 4) - 1), 1.5 * 0.04)
+        self.assertEqual(runs[0]["mesh"], runs[1]["mesh"])
 
     def test_refuses_in_words(self):
         good = goal("slip", relative=0.01)
@@ -199,9 +214,10 @@ class Accuracy(ProgramTest):
         _, said = self.call("run", self.scene(NETWORK), "--output", "out",
                             *(word for entry in (*goal("pressure", well="well", relative=0.01), *in_rock) for word in ("--set", entry)), expect=1)
         self.assertIn(f'{NETWORK}: Sprekk > Flow > Wells > well > "points": in rock, must be on a fracture with "Accuracy"', said)
+        self.refuse(['Output > "events": must be absent with "Accuracy"'], FAULT, DURING, "Output.events.rate=1e-3")
         _, said = self.call("run", self.scene(CRACK), "--restart", "--output", "out",
                             *(word for entry in good for word in ("--set", entry)), expect=1)
-        self.assertIn('--restart: not available with the section "Accuracy"', said)
+        self.assertIn('--restart: not available with "repeated runs" of the section "Accuracy"', said)
 
 
 if __name__ == "__main__":
