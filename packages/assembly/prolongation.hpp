@@ -12,14 +12,13 @@ namespace sprekk::assembly {
 /// Linear map of the values of fields from a mesh of triangles or tetrahedra to a mesh with bisected cells. Each cell
 /// of the fine mesh has a parent in the coarse mesh, which contains it.
 ///
-/// | entity        | value on the fine mesh                                                              | amounts   |
-/// | node          | value of the finite-element function in the parent at the node                      | -         |
-/// | enriched node | sum of N_c rho^(-1/2) q_c in the parent at the node, see TipCell                     | -         |
-/// | cell          | value of the parent                                                                 | by volume |
-/// | fracture face | value of the parent face                                                            | by area   |
-/// | facet         | value of the parent facet; inside of a cell or fracture face: value at the centre of the facet of
-/// the linear
-///                   function with the given values at the centres of the parent's facets; amounts by area, 0 inside |
+/// | entity        | value on the fine mesh                                              | amounts             |
+/// | node          | finite-element function of the parent at the node                   | -                   |
+/// | enriched node | sum of N_c rho^(-1/2) q_c of the parent at the node, see TipCell    | -                   |
+/// | cell          | value of the parent                                                 | by volume           |
+/// | fracture face | value of the parent face                                            | by area             |
+/// | facet         | on a facet of the parent: its value; otherwise linear function with | by area; 0 inside   |
+/// |               | the values of the parent's facets at their centres                  | of the parent       |
 ///
 /// Constants are reproduced, and on nodes all functions of the coarse space. Amounts (Field::is_amount) are divided
 /// among the children; their sum remains. The functions of enriched nodes are reproduced in cells whose nodes off the
