@@ -149,10 +149,11 @@ TEST(Refinement, KeepsTheSquareRootAtTips) {
 
 /// Flow, heat and contact in deformable rock with fractures and wells; in 3D with two fractures that cross.
 model::Scene doublet(bool flat, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides = {flat ? "Mesh.cells={20, 20}" : "Mesh.cells={4, 4, 4}", "Time.scheme=BDF2"};
+  std::vector<std::string> overrides = {flat ? "Mesh.cells={20, 20}" : "Mesh.cells={10, 10, 10}", "Time.scheme=BDF2"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   if (flat) return bisected_scene("thm/doublet_2d.xml", overrides);
   auto scene = bisected_scene("thm/doublet_3d.xml", overrides);
+  scene.mesh.cells = {4, 4, 4};
   std::erase_if(scene.mesh.fractures, [](const auto& one) { return one.first != "injected" && one.first != "middle"; });
   std::erase_if(scene.fractures, [&](const auto& one) { return scene.mesh.fractures.count(one.first) == 0; });
   scene.mesh.fractures["injected"].lower_corner = {50, 50, 100};
