@@ -353,7 +353,7 @@ bool Prolongation::set(const Field& field, LocalIndex cell, int place, Weights& 
         return false;
       weights = shape_functions(cell, place);
       const Real rho = share_of_tips(cell, weights);
-      for (auto& weight : weights) weight /= std::sqrt(rho);
+      for (auto& weight : weights) weight *= rho > 0 ? 1 / std::sqrt(rho) : 0;  // 0 between two tips
       return true;
     }
   }
