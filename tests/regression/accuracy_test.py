@@ -117,7 +117,7 @@ class Accuracy(ProgramTest):
             self.assertAlmostEqual(errors[1][name] / steady, 1, delta=0.03)
 
     def test_refines_during_the_run(self):
-        """A fault under a growing load. The coarse mesh suffices for no step, and later steps need finer meshes."""
+        """A fault under a growing load. A later step needs a finer mesh than the first one."""
         during = ["Time.steps=4", QUIET, DURING, *RELATIVE_SLIP]
         runs = [self.run_scene(FAULT, *during, ranks=ranks) for ranks in (1, 3)]
         fine = self.run_scene(FAULT, "Time.steps=4", QUIET, *RELATIVE_SLIP, "Mesh.cells={160, 160}", "Accuracy.cells=10")
