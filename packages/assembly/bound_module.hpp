@@ -38,7 +38,7 @@ struct BoundModule {
   /// Returns the name of a history variable of the module in the system.
   std::string history_name(const History& variable) const { return module->name() + ": " + variable.name; }
   fields::Field history_field(const History& variable) const {
-    return {history_name(variable), variable.entity, variable.n_components, ""};
+    return {history_name(variable), variable.entity, variable.n_components, "", variable.is_amount};
   }
 
   std::unique_ptr<Module> module;

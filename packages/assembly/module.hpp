@@ -87,6 +87,7 @@ struct History {
   std::string name;
   fields::Entity entity;
   int n_components;
+  bool is_amount = false;  ///< see fields::Field
 };
 
 /// Number derived from the components of a mean or integral over a fracture; no value: undefined.

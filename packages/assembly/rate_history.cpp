@@ -87,8 +87,8 @@ std::vector<std::pair<fields::Field, View<Real**>>> RateHistory::histories() con
   std::vector<std::pair<fields::Field, View<Real**>>> all;
   for (std::size_t b = 0; b < gains_.size(); ++b) {
     const auto& field = structure_.layouts[b].field();
-    if (gains_[b].extent(0) > 0)
-      all.push_back({{"gain of " + field.name, field.entity, field.n_components, ""}, gains_[b]});
+    if (scheme_ != Rates::Scheme::implicit_euler && structure_.unknowns[b].balance)  // the same on all ranks
+      all.push_back({{"gain of " + field.name, field.entity, field.n_components, "", true}, gains_[b]});
   }
   return all;
 }

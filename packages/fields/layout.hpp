@@ -24,6 +24,7 @@ struct Field {
   Entity entity;
   int n_components;  ///< per entity, adjacent in the numbering
   std::string unit;
+  bool is_amount = false;  ///< amounts in entities; the amount in an entity is the sum of those in its parts
 };
 
 /// Unknowns of one field on this rank: owned ones first, then ghosts. Unknown = entity * n_components + component,

@@ -303,7 +303,7 @@ void VtuSeries::keep(const Block& block) {
   base::collectively(*comm_, [&] {
     if (comm_->getRank() == 0) write_piece(constant_file(block.name), block.piece, declared(block.piece));
   });
-  constant_.push_back(block.name);
+  if (std::find(constant_.begin(), constant_.end(), block.name) == constant_.end()) constant_.push_back(block.name);
 }
 
 void VtuSeries::write_piece(const std::string& file, const Piece& piece, const std::string& declared_on_0) const {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <unordered_map>
 
@@ -161,10 +162,12 @@ Bisection::Cell Bisection::child(const Cell& parent, int keeps, GlobalIndex midd
   return child;
 }
 
-void Bisection::refine(const std::vector<GlobalIndex>& cells, int times) {
+std::vector<GlobalIndex> Bisection::refine(const std::vector<GlobalIndex>& cells, int times) {
   Middles middles(coordinates_, dim_);
   std::vector<int> wanted(cells_.size(), 0);
   for (const GlobalIndex cell : cells) wanted[cell] = times;
+  std::vector<GlobalIndex> parent(cells_.size());
+  std::iota(parent.begin(), parent.end(), 0);
   const auto hangs = [&](const Cell& cell) {
     for (int b = 0; b <= dim_; ++b)
       for (int a = 0; a < b; ++a)
@@ -175,6 +178,7 @@ void Bisection::refine(const std::vector<GlobalIndex>& cells, int times) {
     any = false;
     std::vector<Cell> next;
     std::vector<int> next_wanted;
+    std::vector<GlobalIndex> next_parent;
     next.reserve(cells_.size());
     for (std::size_t c = 0; c < cells_.size(); ++c) {
       const auto& cell = cells_[c];
@@ -187,10 +191,13 @@ void Bisection::refine(const std::vector<GlobalIndex>& cells, int times) {
         next.push_back(cell);
       }
       next_wanted.resize(next.size(), std::max(wanted[c] - 1, 0));
+      next_parent.resize(next.size(), parent[c]);
     }
     cells_ = std::move(next);
     wanted = std::move(next_wanted);
+    parent = std::move(next_parent);
   }
+  return parent;
 }
 
 GlobalMesh Bisection::mesh(int order) const {

@@ -24,8 +24,9 @@ class Bisection {
   explicit Bisection(const GlobalMesh& mesh);
 
   /// Bisects the given cells (numbers in mesh()), and their children `times` - 1 times again. Further cells are
-  /// bisected until the mesh conforms; their number per given cell is bounded.
-  void refine(const std::vector<GlobalIndex>& cells, int times = 1);
+  /// bisected until the mesh conforms; their number per given cell is bounded. Returns the number before of the cell
+  /// that contains each new cell.
+  std::vector<GlobalIndex> refine(const std::vector<GlobalIndex>& cells, int times = 1);
 
   /// Returns the present mesh, split along its fractures. Nodes preserve their numbers; copies of split nodes follow
   /// the new nodes. Children replace their parent in the order of cells. Cells of order 2 have straight edges.

@@ -78,6 +78,9 @@ void Accuracy::describe(base::Section& s) {
           "wall-clock time after which no finer mesh begins; absent: no limit");
   s.entry(memory, "memory", "-", base::positive(),
           "maximum memory of all ranks for a mesh, in bytes; absent: no limit");
+  s.choice(refinement, "refinement", {"repeated runs", "during the run"},
+           "repeated runs: each run starts again on a finer mesh; during the run: a step with errors above the "
+           "tolerances is repeated on a finer mesh, with the transferred state of its begin");
   if (s.complete() && quantities.empty()) s.fail("quantities", "missing; give at least one");
 }
 

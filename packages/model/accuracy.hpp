@@ -33,8 +33,11 @@ struct Accuracy {
   long long cells = 1000000;                   ///< upper limit of the cells of a mesh
   std::optional<Real> seconds;                 ///< limit of the total wall-clock time, s
   std::optional<Real> memory;                  ///< memory limit over all ranks, bytes
+  std::string refinement = "repeated runs";
 
   void describe(base::Section& section);
+  /// Returns whether the mesh is refined between steps, with transfer of the state.
+  bool refines_during_run() const { return refinement == "during the run"; }
   /// Quantities without their tolerances, by name.
   std::map<std::string, estimate::Functional> functionals() const { return {quantities.begin(), quantities.end()}; }
 };

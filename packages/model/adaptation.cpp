@@ -61,7 +61,7 @@ std::map<std::string, Real> values_at_end(const Scene& scene, RCP<const Comm> co
   Steps steps(model);
   while (steps.any())
     if (!steps.take().report.converged) return {};
-  auto estimator = make_error_estimator(model);
+  auto estimator = make_error_estimator(model, model.setting().start);
   const auto& quantities = scene.accuracy->quantities;
   estimate::Goals goals(estimator, scene.accuracy->functionals());
   const auto outputs = model.system().outputs(model.state());
@@ -103,6 +103,7 @@ void Adaptation::choose_steps(Scene scene, RCP<const Comm> comm) {
 
 void Adaptation::prepare(Scene& scene, RCP<const Comm> comm) {
   scene.bisection = bisection_;
+  if (scene.accuracy->refines_during_run()) return;
   if (!time_) choose_steps(scene, comm);
   scene.time = *time_;
 }
@@ -110,10 +111,7 @@ void Adaptation::prepare(Scene& scene, RCP<const Comm> comm) {
 /// Computes the spatial error e_k. Assumption: errors e decrease by the factor r = E_k / E_(k-1) of their estimates E.
 /// The value then changes by e_(k-1) - e_k, so e_k is r / (1 - r) times the change. r is limited to [1/3, 2/3]. A
 /// decrease of the estimate below 2^-order in one refinement may be accidental and is not accepted immediately.
-Real Adaptation::space_error(const std::string& name) const {
-  const auto& now = runs_.back().estimates.at(name);
-  if (runs_.size() < 2) return now.error;
-  const auto& before = runs_[runs_.size() - 2].estimates.at(name);
+Real Adaptation::space_error(const estimate::Estimate& now, const estimate::Estimate& before) const {
   const Real change = std::abs(now.value - before.value);
   const Real falls = before.error > 0 ? now.error / before.error : 1;
   const Real r = std::isfinite(falls) ? std::clamp<Real>(falls, 1.0 / 3, 2.0 / 3) : 2.0 / 3;
@@ -141,21 +139,61 @@ std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const 
   return "";
 }
 
+void Adaptation::record(const Model& model, const estimate::Goals& goals, Real begin) {
+  const auto& mesh = model.mesh();
+  const Real here = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
+  runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, here), begin, goals.estimates()});
+  dim_ = mesh.dim();
+  order_ = goals.any_balance() ? 1 : mesh::order(mesh.shape);
+}
+
+std::vector<GlobalIndex> Adaptation::cells_for_step(Model& model, Real begin) {
+  const auto& accuracy = model.scene().accuracy;
+  if (!accuracy || !accuracy->refines_during_run() || !why_.empty()) return {};
+  const auto scope = model.timers().scope("error estimate");
+  auto estimator = make_error_estimator(model, begin);
+  estimate::Goals goals(estimator, accuracy->functionals());
+  const auto outputs = model.system().outputs(model.state());
+  const auto state = present_state(model, outputs);
+  const auto estimate = estimator(state);
+  goals.add(state, estimate, true);
+  const bool repeats = !runs_.empty() && runs_.back().begin == begin;
+  std::map<std::string, Real> weights;
+  for (const auto& [name, quantity] : accuracy->quantities) {
+    const auto& now = goals.estimates().at(name);
+    const Real error = repeats ? space_error(now, runs_.back().estimates.at(name)) : now.error;
+    const Real requested = quantity.requested(now.value);
+    if (requested > 0 && error > requested) weights[name] = std::isfinite(error) ? error / requested : 1;
+  }
+  if (weights.empty()) return {};
+  record(model, goals, begin);
+  why_ = limit(*accuracy, *model.mesh().comm);
+  if (!why_.empty()) return {};
+  goals.weigh(state, estimate, true);
+  return marked(model, goals, weights);
+}
+
 void Adaptation::judge(const Model& model, const estimate::Goals& goals) {
   const auto& accuracy = *model.scene().accuracy;
   const auto& mesh = model.mesh();
-  const Real here = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
-  runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, here), goals.estimates()});
+  const bool during_run = accuracy.refines_during_run(), is_first = runs_.empty();
+  record(model, goals, model.scene().time.start);
   verdicts_.clear();
-  dim_ = mesh.dim();
-  order_ = goals.any_balance() ? 1 : mesh::order(mesh.shape);
   for (const auto& [name, quantity] : accuracy.quantities) {
     const auto& now = runs_.back().estimates.at(name);
-    const Real space = space_error(name), requested = quantity.requested(now.value);
+    const bool alone = is_first || during_run;
+    const Real space = alone ? now.error : space_error(now, runs_[runs_.size() - 2].estimates.at(name));
+    const Real requested = quantity.requested(now.value);
     const auto known = time_errors_.find(name);
     const Real time = known == time_errors_.end() ? std::numeric_limits<Real>::infinity() : known->second;
-    verdicts_.push_back({name, quantity.title(), quantity.unit(mesh.dim()), now.value, space + time, space, time,
-                         requested, runs_.size() > 1 && space + time <= requested});
+    const Real error = during_run ? space : space + time;
+    verdicts_.push_back({name, quantity.title(), quantity.unit(mesh.dim()), now.value, error, space, time, requested,
+                         (during_run || !is_first) && error <= requested});
+  }
+  if (during_run) {
+    if (reached()) why_ = "reached";
+    if (why_.empty()) why_ = "the errors of all steps together exceed the tolerance that each step meets";
+    return;
   }
   const bool too_long =
       std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& v) { return v.time > v.requested; });
@@ -175,6 +213,11 @@ std::vector<GlobalIndex> Adaptation::cells_to_halve(const Model& model, const es
     const Real ratio = left > 0 && std::isfinite(verdict.space) ? verdict.space / left : 1;
     if (!verdict.reached) weights[verdict.name] = std::max<Real>(ratio, 1e-3);
   }
+  return marked(model, goals, weights);
+}
+
+std::vector<GlobalIndex> Adaptation::marked(const Model& model, const estimate::Goals& goals,
+                                            const std::map<std::string, Real>& weights) {
   const auto& mesh = model.mesh();
   std::vector<GlobalIndex> cells;
   for (const LocalIndex cell : estimate::mark_cells(*mesh.comm, goals.indicators(weights), marked_share))

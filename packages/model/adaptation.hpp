@@ -27,14 +27,20 @@ class Adaptation {
 
   Adaptation() : bisection_(std::make_shared<std::optional<mesh::Bisection>>()) {}
 
-  /// Sets the present mesh and time steps in `scene`, from which the next model is built. The first call chooses the
-  /// steps on the mesh of the scene. It halves them until quantities change by less than 0.15 of their tolerance, or
-  /// six times.
+  /// Sets the present mesh and time steps in `scene`, from which the next model is built. With repeated runs, the first
+  /// call chooses the steps on the mesh of the scene. It halves them until quantities change by less than 0.15 of their
+  /// tolerance, or six times.
   void prepare(Scene& scene, RCP<const Comm> comm);
+
+  /// Returns the cells to be bisected before the step from `begin` is repeated, on all ranks; empty: the errors of the
+  /// step meet the tolerances, a limit is reached, or the mesh is not refined during the run. In a repeated step, the
+  /// errors include the bounds from the previous mesh. Errors of earlier steps are not included.
+  std::vector<GlobalIndex> cells_for_step(Model& model, Real begin);
 
   /// Evaluates a completed run. The spatial error of a quantity is the maximum of its estimate and of bounds from the
   /// previous mesh. One bound is proportional to the change of the value. Tolerances can be met from the second mesh
-  /// on.
+  /// on. After refinement during the run, the spatial error is the estimate on the last mesh, and the error of the time
+  /// steps is unknown and not included.
   void judge(const Model& model, const estimate::Goals& goals);
   /// Returns true if another run is needed; otherwise why() contains the reason.
   bool goes_on() const { return why_.empty(); }
@@ -49,16 +55,20 @@ class Adaptation {
   void refine(const Comm& comm);
 
  private:
-  /// Results of one run.
+  /// Results of one run, or of one attempt of a step that is repeated.
   struct Run {
     GlobalIndex cells;
     Real seconds;  ///< since the first run began
+    Real begin;    ///< of the run or step, s
     std::map<std::string, estimate::Estimate> estimates;
   };
 
+  void record(const Model& model, const estimate::Goals& goals, Real begin);
   void choose_steps(Scene scene, RCP<const Comm> comm);
-  Real space_error(const std::string& name) const;
+  Real space_error(const estimate::Estimate& now, const estimate::Estimate& before) const;
   std::vector<GlobalIndex> cells_to_halve(const Model& model, const estimate::Goals& goals) const;
+  static std::vector<GlobalIndex> marked(const Model& model, const estimate::Goals& goals,
+                                         const std::map<std::string, Real>& weights);
   std::string limit(const Accuracy& accuracy, const Comm& comm) const;
 
   std::shared_ptr<std::optional<mesh::Bisection>> bisection_;

@@ -7,6 +7,23 @@ namespace sprekk::model {
 
 using nlohmann::json;
 
+json mesh_summary(const mesh::Mesh& mesh) {
+  const auto& partition = mesh.partition;
+  const auto share = [](const std::array<GlobalIndex, 2>& range, double imbalance) {
+    return json{{"min", range[0]}, {"max", range[1]}, {"imbalance", imbalance}};
+  };
+  return {{"mesh",
+           {{"dimension", mesh.dim()},
+            {"nodes", mesh.n_global_nodes},
+            {"cells", mesh.n_global_cells},
+            {"fracture_faces", mesh.n_global_fracture_faces}}},
+          {"partition",
+           {{"cells", share(partition.cells, partition.cell_imbalance)},
+            {"fracture_faces", share(partition.fracture_faces, partition.fracture_face_imbalance)},
+            {"cut_edges", partition.edge_cut},
+            {"separated_fracture_faces", partition.separated_faces}}}};
+}
+
 json block_summary(const assembly::System& system) {
   json summary;
   const auto& comm = *system.comm();

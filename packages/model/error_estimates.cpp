@@ -4,12 +4,12 @@
 
 namespace sprekk::model {
 
-estimate::ErrorEstimator make_error_estimator(Model& model) {
+estimate::ErrorEstimator make_error_estimator(Model& model, Real start) {
   std::vector<std::unique_ptr<estimate::MeshError>> errors;
   physics::for_each_physics([&]<physics::HasEstimate P>(P) {
     if (auto error = P::Estimate::mesh_error(model.setting(), model.system())) errors.push_back(std::move(error));
   });
-  estimate::ErrorEstimator estimator(model.system(), std::move(errors), model.setting().start,
+  estimate::ErrorEstimator estimator(model.system(), std::move(errors), start,
                                      [&](const fields::BlockVector& x, const fields::BlockVector& right_side,
                                          fields::BlockVector& dx, Real tolerance) -> std::string {
                                        const auto report =

@@ -11,6 +11,7 @@
 #include "model/change.hpp"
 #include "model/fingerprint.hpp"
 #include "model/scene_check.hpp"
+#include "model/transfer.hpp"
 
 #include <algorithm>
 
@@ -74,15 +75,7 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
     : more_modules_(more_modules), timers_(rcp(new base::Timers)), time_(scene.time.start) {
   auto draft = prepared(scene);
   std::string unconstrained;  // rock unsupported by the scene, perhaps supported by host modules; on rank 0
-  {
-    const auto scope = timers_->scope("mesh");
-    whole_mesh_ =
-        mesh::make_distributed([&] { return checked_mesh(draft, more_modules ? &unconstrained : nullptr); }, comm);
-    whole_mesh_ = draft.value.refined(whole_mesh_);
-    auto facets = physics::Facets::none;
-    physics::for_each_physics([&](auto physics) { facets = std::max(facets, physics.needs_facets(draft.value)); });
-    if (facets != physics::Facets::none) whole_mesh_ = mesh::with_facets(whole_mesh_, facets == physics::Facets::all);
-  }
+  whole_mesh_ = make_whole_mesh(draft, comm, unconstrained);
   auto made = drafted(std::move(draft.value), unconstrained);
   scene_ = made.scene;
   system_ = make_system(std::move(made));
@@ -90,6 +83,18 @@ Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more
   scene_.is_continued = true;  // from here on the scene only changes
   check_stages();
   start_solver();
+}
+
+/// Makes the mesh with all regions. `unconstrained`: see checked_mesh(); set if there are host modules.
+RCP<const mesh::Mesh> Model::make_whole_mesh(const base::Draft<Scene>& draft, RCP<const Comm> comm,
+                                             std::string& unconstrained) const {
+  const auto scope = timers_->scope("mesh");
+  auto mesh =
+      mesh::make_distributed([&] { return checked_mesh(draft, more_modules_ ? &unconstrained : nullptr); }, comm);
+  mesh = draft.value.refined(mesh);
+  auto facets = physics::Facets::none;
+  physics::for_each_physics([&](auto physics) { facets = std::max(facets, physics.needs_facets(draft.value)); });
+  return facets == physics::Facets::none ? mesh : mesh::with_facets(mesh, facets == physics::Facets::all);
 }
 
 /// Makes the mesh and the modules. `unconstrained`: message on rock that host modules must support; empty if all is
@@ -139,6 +144,7 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   base::throw_errors(errors);
   refuse(refused_changes(before, prepared.value));
   prepared.value.is_continued = true;
+  prepared.value.bisection = scene_.bisection;
   physics::for_each_physics([&]<physics::HasChange P>(P) { P::Change::prepare(*whole_mesh_, before, prepared.value); });
   auto draft = drafted(std::move(prepared.value));
   std::vector<std::string> lines;
@@ -189,6 +195,28 @@ void Model::change(const Scene& changed) {
   carry_over(*whole_mesh_, *system_, x_, *system, x);
   system->pass_unbalanced(x);
   scene_ = std::move(scene);
+  replace(std::move(system), std::move(x));
+}
+
+void Model::refine(const std::vector<GlobalIndex>& cells) {
+  SPREKK_CHECK(scene_.bisection, "{}: the mesh of a model without Scene::bisection cannot be refined", scene_.origin);
+  const auto scope = timers_->scope("refinement");
+  const auto comm = whole_mesh_->comm;
+  std::vector<GlobalIndex> parent;  // on rank 0
+  base::collectively(*comm, [&] {
+    if (auto& bisection = *scene_.bisection) parent = bisection->refine(cells, mesh().dim());
+  });
+  auto prepared = model::prepared(scene_);
+  std::string unconstrained;
+  whole_mesh_ = make_whole_mesh(prepared, comm, unconstrained);
+  auto system = make_system(drafted(std::move(prepared.value), unconstrained));
+  auto x = system->initial();
+  transfer({mesh(), system->mesh(), parent}, *system_, x_, *system, x);
+  refinements_.push_back(cells);
+  replace(std::move(system), std::move(x));
+}
+
+void Model::replace(std::unique_ptr<assembly::System> system, fields::BlockVector x) {
   stepper_.reset();
   newton_.reset();
   beginning_.reset();
@@ -281,9 +309,13 @@ io::Checkpoint Model::save() {
     checkpoint.vectors[field.name] = vector;
   }
   const auto memory = system_->memory();
-  checkpoint.content = {{"time", time_},           {"dt", memory.dt},
-                        {"scales", memory.scales}, {"calibration", memory.calibration},
-                        {"errors", memory.errors}, {"scene", fingerprint(scene_, *system_)}};
+  checkpoint.content = {{"time", time_},
+                        {"dt", memory.dt},
+                        {"scales", memory.scales},
+                        {"calibration", memory.calibration},
+                        {"errors", memory.errors},
+                        {"scene", fingerprint(scene_, *system_)},
+                        {"refinements", refinements_}};
   start_solver();
   return checkpoint;
 }
@@ -291,6 +323,8 @@ io::Checkpoint Model::save() {
 void Model::restore(const io::Checkpoint& checkpoint) {
   beginning_.reset();
   const auto& content = checkpoint.content;
+  const auto refinements = content.value("refinements", refinements_);
+  for (std::size_t k = refinements_.size(); k < refinements.size(); ++k) refine(refinements[k]);
   check_fingerprint(content.at("scene"), fingerprint(scene_, *system_));
   for (std::size_t b = 0; b < x_.size(); ++b)
     redistribute(*checkpoint.vectors.at(key_of(system_->blocks()[b])), *x_[b]);

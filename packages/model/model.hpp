@@ -48,8 +48,12 @@ class Model {
   /// "release" of Bulk. If both scenes are equal, the call has no effect. Unsupported changes throw an Error, and the
   /// model remains unchanged.
   void change(const Scene& changed);
-  /// Returns the number of effective calls of change(), each with a new system. Stored data.
+  /// Returns the number of effective calls of change() and refine(), each with a new system. Stored data.
   int n_changes() const { return n_changes_; }
+  /// Bisects cells, given on all ranks by their numbers in the mesh with all regions, into cells with edges half as
+  /// long, and adjacent cells as necessary. The state is transferred, see transfer(); it counts as a change. Throws an
+  /// Error if the scene has no Scene::bisection.
+  void refine(const std::vector<GlobalIndex>& cells);
 
   /// Finds an equilibrium at time() after changes of the scene, of fields or of host modules. Behaves otherwise like
   /// step_to(). Throws an Error in models with storage, which requires time.
@@ -97,6 +101,8 @@ class Model {
     RCP<const mesh::Mesh> mesh;
     std::vector<std::unique_ptr<assembly::Module>> modules;
   };
+  RCP<const mesh::Mesh> make_whole_mesh(const base::Draft<Scene>& draft, RCP<const Comm> comm,
+                                        std::string& unconstrained) const;
   Draft drafted(Scene scene, const std::string& unconstrained = "") const;
   Draft drafted_change(const Scene& before, const Scene& changed) const;
   void check_stages() const;
@@ -112,6 +118,7 @@ class Model {
   };
   solve::StepReport advance(Real t);
   void start_solver();
+  void replace(std::unique_ptr<assembly::System> system, fields::BlockVector x);
   Beginning beginning();
 
   ModuleFactory more_modules_;
@@ -124,7 +131,8 @@ class Model {
   fields::BlockVector x_;
   Real time_ = 0;
   int n_changes_ = 0;
-  std::optional<Beginning> beginning_;  // of the last step
+  std::vector<std::vector<GlobalIndex>> refinements_;  ///< cells of all calls of refine()
+  std::optional<Beginning> beginning_;                 // of the last step
 };
 
 /// Makes the modules of a scene, which together form its equation system. Collective.

@@ -129,24 +129,14 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   if (earlier)
     for (const auto& entry : earlier->journal) ends_.push_back(entry.at("step").at("time"));
   const auto& accuracy = model_.scene().accuracy;
-  if (model_.scene().output.error_estimate || accuracy) estimator_.emplace(make_error_estimator(model_));
+  if (model_.scene().output.error_estimate || accuracy)
+    estimator_.emplace(make_error_estimator(model_, model_.setting().start));
   if (accuracy) goals_.emplace(*estimator_, accuracy->functionals());
   tables_.emplace(model_);
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
   json_["ranks"] = comm->getSize();
-  json_["mesh"] = {{"dimension", mesh.dim()},
-                   {"nodes", mesh.n_global_nodes},
-                   {"cells", mesh.n_global_cells},
-                   {"fracture_faces", mesh.n_global_fracture_faces}};
-  const auto& partition = mesh.partition;
-  const auto share = [](const std::array<GlobalIndex, 2>& range, double imbalance) {
-    return json{{"min", range[0]}, {"max", range[1]}, {"imbalance", imbalance}};
-  };
-  json_["partition"] = {{"cells", share(partition.cells, partition.cell_imbalance)},
-                        {"fracture_faces", share(partition.fracture_faces, partition.fracture_face_imbalance)},
-                        {"cut_edges", partition.edge_cut},
-                        {"separated_fracture_faces", partition.separated_faces}};
+  json_.update(mesh_summary(mesh));
   const auto& solver = model_.newton().linear().solver();
   json_["solver"] = {{"choice", solver.reason}, {"parameters", solver.describe()}};
   json_["blocks"] = block_summary(model_.system());
@@ -182,8 +172,12 @@ void Results::add(const json& step) {
 }
 
 void Results::start_fractures(const std::vector<Real>& written) {
+  fractures_.emplace(model_.mesh().comm, directory_, "fractures", written, io::VtuSeries::Of::blocks);
+  add_intersections();
+}
+
+void Results::add_intersections() {
   const auto& mesh = model_.mesh();
-  fractures_.emplace(mesh.comm, directory_, "fractures", written, io::VtuSeries::Of::blocks);
   const auto piece = io::intersection_piece(mesh::intersections(mesh));
   if (base::on_any_rank(*mesh.comm, piece.n_cells() > 0)) fractures_->keep({"intersections", piece});
 }
@@ -340,7 +334,12 @@ void Results::add_error_bounds(const json& fractures, const std::vector<OutputFi
 void Results::follow_change() {
   n_changes_ = model_.n_changes();
   probes_.update_places();
-  if (estimator_) estimator_.emplace(make_error_estimator(model_));
+  if (estimator_) estimator_.emplace(make_error_estimator(model_, ends_.back()));
+  if (const auto& accuracy = model_.scene().accuracy) {
+    goals_.emplace(*estimator_, accuracy->functionals());
+    json_.update(mesh_summary(model_.mesh()));
+    if (fractures_) add_intersections();
+  }
   tables_.emplace(model_);
 }
 

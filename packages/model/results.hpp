@@ -76,6 +76,7 @@ class Results {
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
   void start_fractures(const std::vector<Real>& written);  ///< continues their files after the steps at these times
+  void add_intersections();
   long long add_oscillating(const solve::StepReport& report);
   bool fields_are_due(const StepTaken& step) const;
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
@@ -107,6 +108,9 @@ class Results {
 /// Writes a results.json with the reason why a run did not begin. With `only_replace`, it only replaces an existing
 /// file. Failures to write are ignored. Collective.
 void write_failure(const Comm& comm, const std::string& directory, const std::string& reason, bool only_replace);
+
+/// Returns `mesh` with the numbers of entities, and `partition`. Stored data.
+nlohmann::json mesh_summary(const mesh::Mesh& mesh);
 
 /// Returns fields, blocks with their unknowns and bytes, and the exchange between ranks. Collective.
 nlohmann::json block_summary(const assembly::System& system);

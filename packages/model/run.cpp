@@ -102,8 +102,10 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
       Scene scene = scene_of(options, *comm);
       has_scene = true;
       if (scene.accuracy) {
-        SPREKK_CHECK(!options.restart,
-                     "--restart: not available with the section \"Accuracy\"; run the scene without --restart");
+        SPREKK_CHECK(
+            !options.restart || scene.accuracy->refines_during_run(),
+            "--restart: not available with \"repeated runs\" of the section \"Accuracy\"; run the scene without "
+            "--restart");
         adaptation.prepare(scene, comm);
       }
       auto model = std::make_unique<Model>(scene, comm);
@@ -178,6 +180,20 @@ void judge(const Model& model, Results& results, Adaptation& adaptation, base::L
   for (const auto& verdict : adaptation.verdicts()) log.info("{}", verdict.line());
 }
 
+/// Takes the next step. While its errors exceed the tolerances of Accuracy, the mesh is refined and the step repeated.
+StepTaken take_step(Model& model, Steps& steps, Adaptation& adaptation, base::Log& log) {
+  for (;;) {
+    auto taken = steps.take();
+    if (!taken.report.converged || taken.report.stopped) return taken;
+    const auto cells = adaptation.cells_for_step(model, taken.begin);
+    if (cells.empty()) return taken;
+    steps.take_back();
+    model.refine(cells);
+    log.info("t = {:.6g}: the step to {:.6g} is repeated on a mesh of {} cells", taken.begin, taken.end,
+             model.mesh().n_global_cells);
+  }
+}
+
 /// Takes the remaining steps of the model until one fails or the run is stopped.
 Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& checkpoints, Adaptation& adaptation,
                   base::Log& log, const std::function<bool()>& should_stop) {
@@ -188,7 +204,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
   while (steps.any()) {
     bool interrupted = false;
     const auto taken = or_finished(results, [&] {
-      auto taken = naming_file(scene.origin, [&] { return steps.take(); });
+      auto taken = naming_file(scene.origin, [&] { return take_step(model, steps, adaptation, log); });
       const auto& step = taken.report;
       bool last = !steps.any();
       interrupted = step.stopped || (!last && step.converged && base::any_rank(*model.mesh().comm, should_stop));

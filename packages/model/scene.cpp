@@ -98,6 +98,12 @@ void Scene::check_accuracy(base::Section& s) const {
   if (refinements() > 0) fail(section + " > \"refinements\"", fmt::format("is {}, must be 0", refinements()));
   if (const auto& periodic = mesh_file ? mesh_file->periodic : mesh.periodic; !periodic.empty())
     fail(section + " > \"periodic\"", fmt::format("is {{{}}}, must be absent", fmt::join(periodic, ", ")));
+  if (accuracy->refines_during_run()) {
+    if (output.events) fail("Output > \"events\"", "must be absent");
+    for (const auto& [name, stage] : stages)
+      if (!stage.backfill.empty()) fail(fmt::format("Stages > {} > \"backfill\"", name), "must be absent");
+    return;
+  }
   if (output.checkpoints) fail("Output > \"checkpoints\"", "must be absent");
   if (!stages.empty()) fail("Stages", "must be absent");
   if (time.chooses_steps())

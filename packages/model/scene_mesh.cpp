@@ -62,7 +62,7 @@ mesh::Bisection Scene::bisected() const {
 }
 
 mesh::GlobalMesh Scene::read_mesh() const {
-  const bool raised_later = refinements() > 0 || accuracy;
+  const bool raised_later = refinements() > 0 || accuracy || bisection;
   if (!mesh_file) {
     auto box = mesh;
     if (raised_later) box.order = 1;

@@ -92,6 +92,7 @@ Real Steps::share_done() const {
 StepTaken Steps::take() {
   const bool begins = begin_stages(model_.time(), true) || begun_before_;
   begun_before_ = false;
+  before_ = {next_, begins, control_};
   StepTaken step;
   if (control_) {
     if (begins) change_course();
@@ -104,6 +105,13 @@ StepTaken Steps::take() {
   step.stage = stage();
   step.begins_stage = begins;
   return step;
+}
+
+void Steps::take_back() {
+  model_.take_back();
+  next_ = before_.next;
+  begun_before_ = before_.begins;
+  control_ = before_.control;
 }
 
 /// Restarts the control of adaptive steps where loads or their slopes are discontinuous.

@@ -37,6 +37,8 @@ class Steps {
   int n_left() const { return control_ ? 0 : static_cast<int>(times_.size() - next_); }  ///< 0 for adaptive steps
   /// Takes the next step; rejected attempts are reverted. The report shows whether the step failed or was stopped.
   StepTaken take();
+  /// Reverts the last step, so that take() repeats it. The step must have converged.
+  void take_back();
 
   /// Applies the stages before t to a model that will be restored to time t. With `begun`, it also applies the stage
   /// that begins at t.
@@ -64,8 +66,13 @@ class Steps {
   std::size_t next_ = 0;                       // index of the next entry of times_
   std::vector<StagedScene> stages_;            // ordered by time
   std::size_t n_begun_ = 0;                    // number of begun stages
-  bool begun_before_ = false;                  // the next step begins a stage of a restored model
+  bool begun_before_ = false;                  // the next step begins a stage that has begun already
   std::optional<solve::StepControl> control_;  // control of adaptive steps
+  struct {
+    std::size_t next = 0;
+    bool begins = false;
+    std::optional<solve::StepControl> control;
+  } before_;  // data at the begin of the last step
 };
 
 }  // namespace sprekk::model

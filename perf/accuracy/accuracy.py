@@ -39,11 +39,12 @@ class Case:
     finest: object = None   # entries of the mesh of a reference run of order 2
     uniform_2: list = None  # uniform meshes of order 2; None: those of order 1 except the finest
     seconds: float = None   # time limit of an adaptive run; default: --seconds
+    during: bool = False    # also measures refinement during the run
 
 
 @dataclass
 class Row:
-    kind: str             # uniform or adaptive
+    kind: str             # uniform, adaptive (repeated runs) or during run
     order: int
     requested: float          # relative request of adaptive runs
     cells: int
@@ -108,7 +109,9 @@ def cases():
         Case("well in a network", **flow, fractures="well well", sets=(*steady, *well)),
         Case("flow through a network", **flow, fractures="boundary west", sets=steady),
         Case("plate", "accuracy/plate_2d.xml", "flow", "boundary east", plate(2)[0], plate(2, 4, 8, 16, 32), requests=REQUESTS[:2],
-             reference=1e-3, sets=("Time.scheme=BDF2", "Time.steps=10")),
+             reference=1e-3, sets=("Time.scheme=BDF2", "Time.steps=10"), during=True),
+        Case("fault", "accuracy/fault_2d.xml", "slip", "fault", box(10)[0], box(10, 20, 40, 80, 160), requests=REQUESTS[:2], reference=1e-3,
+             sets=("Time.steps=10",), during=True),
         Case("cooling", "thm/cooling_2d.xml", "slip", "fault", box(16)[0], box(16, 32, 64, 128), requests=REQUESTS[:2], reference=1e-3),
         Case("doublet", "accuracy/doublet_2d.xml", "temperature", "well producer", box(10)[0], box(10, 20, 40, 80), uniform_2=[], orders=(1,),
              requests=(0.01, 0.003), reference=1.5e-3, seconds=300),
@@ -190,12 +193,13 @@ def uniform(options, case, order, k, source, steps):
     return Row("uniform", order, math.nan, results["mesh"]["cells"], seconds, value_of(case, results))
 
 
-def adaptive(options, case, order, requested, label=None):
-    results = start(options, case, order, case.coarse, requested, label or f"adaptive_{order}_{requested:g}")
+def adaptive(options, case, order, requested, label=None, kind="adaptive", others=()):
+    label = label or f"{kind.replace(' ', '_')}_{order}_{requested:g}"
+    results = start(options, case, order, case.coarse, requested, label, others)
     accuracy = results["accuracy"]
     goal, last = accuracy["quantities"]["goal"], accuracy["meshes"][-1]
     estimate = math.inf if goal["error"] is None else goal["error"] / abs(goal["value"])
-    return Row("adaptive", order, requested, last["cells"], last["seconds"], goal["value"], estimate, goal["reached"]), len(results["steps"])
+    return Row(kind, order, requested, last["cells"], last["seconds"], goal["value"], estimate, goal["reached"]), len(results["steps"])
 
 
 def seconds_at(rows, error):
@@ -227,6 +231,9 @@ def measure(options, case):
     rows = [uniform(options, case, order, k, source, steps) for order, sources in plain.items()
             for k, source in enumerate(sources[:2 if options.quick else None])]
     rows += [row for row, _ in runs]
+    if case.during:  # with the time steps of uniform runs
+        others = ("Accuracy.refinement=during the run", f"Time.steps={steps}")
+        rows += [adaptive(options, case, order, requested, None, "during run", others)[0] for order in case.orders for requested in requests]
     for row in rows:
         row.error = abs(row.value / reference - 1)
     return rows
@@ -250,7 +257,7 @@ def show(case, rows):
     plain = [row for row in rows if row.kind == "uniform"]
     for row in rows:
         words = f"{row.kind:10}{row.order:>6}{'' if math.isnan(row.requested) else format(row.requested, 'g'):>9}{row.cells:>9}{row.seconds:>9.2f}{row.error:>11.2e}"
-        if row.kind == "adaptive":
+        if row.kind != "uniform":
             words += f"{row.estimate:>11.2e}{row.estimate / row.error:>11.2f}{seconds_at(plain, row.error) / row.seconds:>10.1f}"
             words += "" if row.reached else "   not reached, it says"
         print(words, flush=True)
@@ -261,9 +268,9 @@ def draw(measured, file):
     for axes, (case, rows) in zip(all_axes.flat, measured):
         for kind, order in dict.fromkeys((row.kind, row.order) for row in rows):
             of = [row for row in rows if (row.kind, row.order) == (kind, order)]
-            colour = style.LINES[order - 1 + 2 * (kind == "adaptive")]
+            colour = style.LINES[order - 1 + 2 * ("uniform", "adaptive", "during run").index(kind)]
             axes.loglog([row.seconds for row in of], [row.error for row in of], "o-", color=colour, markersize=4, label=f"{kind}, order {order}")
-            if kind == "adaptive":
+            if kind != "uniform":
                 axes.loglog([row.seconds for row in of], [row.estimate for row in of], "x:", color=colour, markersize=4)
         axes.set_title(case.name)
         axes.set_xlabel("seconds")

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Error control by the section Accuracy: accuracy_test.py PROGRAM ROOT MPIEXEC"""
 import math
+import re
+import shutil
 
 from program import ProgramTest, main
 
@@ -9,6 +11,9 @@ DOUBLET = "accuracy/doublet_2d.xml"
 NETWORK = "flow/network_2d.xml"
 EXACT = 1.5e-3 * math.pi / 4  # mean slip, or opening, of the crack
 QUIET = "Output.vtu=false"
+FAULT, PLATE, TEARING = "accuracy/fault_2d.xml", "accuracy/plate_2d.xml", "verification/tearing_3d.xml"
+DURING = "Accuracy.refinement=during the run"
+RELATIVE_SLIP = ("Accuracy.quantities.fault slips.relative=0.03", "Accuracy.quantities.branch slips.absolute=1 mm")
 
 
 def goal(quantity, name="goal", **entries):
@@ -111,6 +116,75 @@ class Accuracy(ProgramTest):
         for name, steady in errors[0].items():
             self.assertAlmostEqual(errors[1][name] / steady, 1, delta=0.03)
 
+    def test_refines_during_the_run(self):
+        """A fault under a growing load. A later step needs a finer mesh than the first one."""
+        during = ["Time.steps=4", QUIET, DURING, *RELATIVE_SLIP]
+        runs = [self.run_scene(FAULT, *during, ranks=ranks) for ranks in (1, 3)]
+        fine = self.run_scene(FAULT, "Time.steps=4", QUIET, *RELATIVE_SLIP, "Mesh.cells={160, 160}", "Accuracy.cells=10")
+        value = fine["accuracy"]["quantities"]["fault slips"]["value"]
+        for results in runs:
+            accuracy = results["accuracy"]
+            one = accuracy["quantities"]["fault slips"]
+            self.assertTrue(accuracy["reached"], accuracy["ended"])
+            self.assertLess(abs(one["value"] / value - 1), 1.5 * 0.03)
+            self.assertIsNone(one["time"])
+            self.assertEqual(len(results["steps"]), 4)
+            self.assertEqual(results["mesh"]["cells"], accuracy["meshes"][-1]["cells"])
+            self.assertGreater(accuracy["meshes"][-1]["cells"], 1.5 * accuracy["meshes"][0]["cells"])
+        for first, other in zip(*(run["accuracy"]["meshes"] for run in runs)):
+            self.assertEqual(first["cells"], other["cells"])
+        for first, other in zip(*(run["steps"] for run in runs)):
+            slips = [step["fractures"]["fault"]["mean_slip"] for step in (first, other)]
+            self.assertAlmostEqual(slips[0] / slips[1], 1, delta=1e-6)
+
+    def test_refined_meshes_are_part_of_checkpoints(self):
+        sets = [QUIET, DURING, *RELATIVE_SLIP, "Output.checkpoints.steps=1"]
+        whole = self.run_scene(FAULT, *sets, "Time.steps=4")
+        self.run_scene(FAULT, *sets, "Time.end=0.5", "Time.steps=2", output="parts")
+        for ranks in (1, 2):
+            shutil.copytree(self.folder / "parts", self.folder / f"parts_{ranks}")
+            arguments = [word for entry in (*sets, "Time.steps=4") for word in ("--set", entry)]
+            self.call("run", self.scene(FAULT), "--output", f"parts_{ranks}", "--restart", *arguments, ranks=ranks)
+            results = self.results(f"parts_{ranks}")
+            self.assertEqual(results["mesh"], whole["mesh"])
+            for first, other in zip(whole["steps"], results["steps"]):
+                slips = [step["fractures"]["fault"]["mean_slip"] for step in (first, other)]
+                self.assertAlmostEqual(slips[0] / slips[1], 1, delta=1e-8)
+
+    def test_refines_a_draining_plate_during_the_run(self):
+        """The pressure gradient begins at the drained side and moves inwards."""
+        sets = ["Time.scheme=BDF2", "Time.steps=10", QUIET, "Accuracy.quantities.outflow.relative=0.03", "Accuracy.quantities.force.relative=0.03"]
+        results = self.run_scene(PLATE, *sets, DURING, "Mesh.cells={10, 1}")
+        fine = self.run_scene(PLATE, *sets, "Mesh.cells={160, 16}", "Accuracy.cells=10")
+        self.assertGreater(len(results["accuracy"]["meshes"]), 1)
+        for name in ("outflow", "force"):
+            values = [run["accuracy"]["quantities"][name]["value"] for run in (results, fine)]
+            self.assertLess(abs(values[0] / values[1] - 1), 1.5 * 0.03, name)
+
+    def test_refines_during_adaptive_steps_and_stages(self):
+        """At 40 s another pressure is prescribed at the drained side."""
+        scene = self.folder / "plate.xml"
+        scene.write_text(re.sub(r'.*name="steps".*', "", self.scene(PLATE).read_text()))
+        sets = [QUIET, "Accuracy.quantities.outflow.relative=0.05", "Accuracy.quantities.force.relative=0.05", "Time.tolerance=0.05",
+                "Stages.refill.time=40", "Stages.refill.Boundary conditions.drained.pressure=1e6", DURING, "Mesh.cells={10, 1}"]
+        results = self.run_scene(scene, *sets)
+        self.assertEqual(results["status"], "completed")
+        self.assertGreater(len(results["accuracy"]["meshes"]), 2)
+        self.assertEqual([stage["name"] for stage in results["stages"]], ["refill"])
+        self.assertEqual(results["steps"][-1]["time"], 50)
+        whole = self.run_scene(scene, *sets, "Accuracy.cells=10", output="coarse")
+        self.assertEqual(whole["mesh"]["cells"], 20)
+        self.assertIn("cells", whole["accuracy"]["ended"])
+
+    def test_refines_in_3d_during_the_run(self):
+        runs = [self.run_scene(TEARING, *goal("slip", relative=0.04), DURING, QUIET, "Time.steps=2", "Mesh.cells={8, 2, 8}", ranks=ranks) for ranks in (1, 2)]
+        for results in runs:
+            one = results["accuracy"]["quantities"]["goal"]
+            self.assertTrue(one["reached"])
+            self.assertGreater(results["mesh"]["cells"], 768)
+            self.assertLess(abs(one["value"] / (2e-3 * math.pi / 4) - 1), 1.5 * 0.04)
+        self.assertEqual(runs[0]["mesh"], runs[1]["mesh"])
+
     def test_refuses_in_words(self):
         good = goal("slip", relative=0.01)
         self.refuse(['Sprekk > Mesh > "cell": is quadrilateral, must be triangle with "Accuracy"'], CROSSING, *good, "Mesh.cell=quadrilateral")
@@ -140,9 +214,10 @@ class Accuracy(ProgramTest):
         _, said = self.call("run", self.scene(NETWORK), "--output", "out",
                             *(word for entry in (*goal("pressure", well="well", relative=0.01), *in_rock) for word in ("--set", entry)), expect=1)
         self.assertIn(f'{NETWORK}: Sprekk > Flow > Wells > well > "points": in rock, must be on a fracture with "Accuracy"', said)
+        self.refuse(['Output > "events": must be absent with "Accuracy"'], FAULT, DURING, "Output.events.rate=1e-3")
         _, said = self.call("run", self.scene(CRACK), "--restart", "--output", "out",
                             *(word for entry in good for word in ("--set", entry)), expect=1)
-        self.assertIn('--restart: not available with the section "Accuracy"', said)
+        self.assertIn('--restart: not available with "repeated runs" of the section "Accuracy"', said)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ class PoroelasticCoupling final : public assembly::Module,
     d.relations = {{"stress", 1, "pressure"}, {"pressure", 1, "stress"}};
     d.schur = {"pressure"};
     d.stores = true;
-    d.history = {{"volume", fields::Entity::cell, 1}, {"exchange", fields::Entity::facet, 1}};
+    d.history = {{"volume", fields::Entity::cell, 1, true}, {"exchange", fields::Entity::facet, 1, true}};
     return d;
   }
 

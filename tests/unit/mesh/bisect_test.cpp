@@ -220,6 +220,28 @@ TEST(Bisect, HalvesChildrenToo) {
     }
 }
 
+/// The cells with the same parent have its volume and region, and the first moments of the volume.
+TEST(Bisect, ReturnsTheParents) {
+  for (const auto& cell : simplices) {
+    const auto mesh = shaken(make_box(unit_steps(cell, std::vector<int>(dim_of(cell), 3))));
+    Bisection bisection(mesh);
+    const auto parent = bisection.refine({0, 1, 5}, 2);
+    const auto fine = bisection.mesh();
+    ASSERT_EQ(static_cast<GlobalIndex>(parent.size()), fine.n_cells());
+    std::vector<Real> volume(mesh.n_cells(), 0);
+    std::vector<Vector> moment(mesh.n_cells());
+    for (GlobalIndex c = 0; c < fine.n_cells(); ++c) {
+      volume[parent[c]] += cell_volume(fine, c);
+      moment[parent[c]] = moment[parent[c]] + cell_volume(fine, c) * cell_centre(fine, c);
+      EXPECT_EQ(fine.cell_region[c], mesh.cell_region[parent[c]]);
+    }
+    for (GlobalIndex c = 0; c < mesh.n_cells(); ++c) {
+      EXPECT_NEAR(volume[c], cell_volume(mesh, c), 1e-13);
+      EXPECT_LT(norm(moment[c] - cell_volume(mesh, c) * cell_centre(mesh, c)), 1e-12);
+    }
+  }
+}
+
 TEST(Bisect, RefusesOtherCells) {
   const auto of = [](BoxMesh box) { return error_of([&] { Bisection{make_box(box)}; }); };
   EXPECT_THAT(of(unit_steps("hexahedron", {2, 2, 2})), HasSubstr("needs triangles or tetrahedra"));
