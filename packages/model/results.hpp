@@ -79,6 +79,7 @@ class Results {
   long long add_oscillating(const solve::StepReport& report);
   bool fields_are_due(const StepTaken& step) const;
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
+  void remove_earlier(bool goes_on) const;
   void write_json();
   void finish_in_place(const std::string& reason);
 
