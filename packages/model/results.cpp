@@ -92,6 +92,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   if (earlier) {
     for (const auto& entry : earlier->journal) add(entry.at("step"));
     if (!earlier->stages.empty()) json_["stages"] = earlier->stages;
+    json_.update(earlier->units);
     json_["restarts"] = earlier->restarts;
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
@@ -161,6 +162,13 @@ std::vector<json> Results::journal(int begin) const {
       for (const auto& table : series_->tables())
         entries.back()["probes"][table.name] = table.rows[table.rows.size() - n_steps_ + k].values;
   }
+  return entries;
+}
+
+json Results::units_of_steps() const {
+  json entries = json::object();
+  for (const char* name : {"units", "tables"})
+    if (json_.contains(name)) entries[name] = json_[name];
   return entries;
 }
 

@@ -145,12 +145,13 @@ void Results::write_json() {
   io::write_json(comm, directory_ + "/results.json", json_);
   if (series_) series_->write_all();
   base::collectively(comm, [&] {
-    if (comm.getRank() != 0 || singles_.empty()) return;
+    if (comm.getRank() != 0) return;
+    for (const auto& [name, text] : tables_csv(json_)) io::write_file(directory_ + '/' + name + ".csv", text);
+    if (singles_.empty()) return;
     io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
     const auto events =
         catalogue_ ? catalogue_csv(json_, singles_) : events_csv(json_, singles_, model_.setting().start);
     if (!events.empty()) io::write_file(directory_ + "/events.csv", events);
-    for (const auto& [name, text] : tables_csv(json_)) io::write_file(directory_ + '/' + name + ".csv", text);
   });
   n_written_ = static_cast<int>(json_["steps"].size());
   last_write_ = std::chrono::steady_clock::now();
