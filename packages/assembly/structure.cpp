@@ -80,6 +80,7 @@ void Structure::add_block(const Unknown& unknown, const fields::Layout& layout) 
   block.enriches = unknown.enriches;
   block.condensed_into = unknown.condensed_into;
   block.balance = unknown.balance;
+  if (block.balance) block.quantity = unknown.scale;
   blocks.push_back(block);
 }
 

@@ -48,6 +48,7 @@ struct Block {
   std::string condensed_into = "";  ///< its matrix is nearly diagonal: preconditioners eliminate it into this block
   bool advected = false;            ///< advected by a flow: its matrix may be far from symmetric
   bool balance = false;             ///< its rows are rate balances, which may differ by many orders of magnitude
+  std::string quantity = "";        ///< quantity of these balances; blocks with the same one exchange it
 };
 
 /// Blocks with couplings among themselves within one entity only, eliminated entity by entity. The i-th owned entity

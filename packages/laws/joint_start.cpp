@@ -59,7 +59,7 @@ JointStart start_of(const JointParameters& joint, const std::array<Real, 3>& tra
   const Real compliance = law.compliance(Contact<Real>{.lambda_n = at.lambda_n, .dim = dim, .history = at.history});
   at.lambda_n = traction[0];
   start.bound = law.bound(at);
-  for (int k = 1; k < dim; ++k) start.jump[k] = joint.plastic_jump[k - 1] + compliance * traction[k];
+  for (int k = 1; k < dim; ++k) start.jump[k] = joint.plastic_jump[k - 1] + compliance * start.traction[k];
   return start;
 }
 

@@ -16,8 +16,9 @@ EarlierResults Checkpointing::restore() {
   steps_.resume(checkpoint.content.value("steps", nlohmann::json()));
   log_.info("going on from t = {}", model_.time());
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
-  return {std::move(checkpoint.journal), checkpoint.content.at("restarts"), checkpoint.content.at("probes"),
-          checkpoint.content.value("stages", nlohmann::json::array()), std::move(checkpoint.vectors)};
+  return {std::move(checkpoint.journal),   checkpoint.content.at("restarts"),
+          checkpoint.content.at("probes"), checkpoint.content.value("stages", nlohmann::json::array()),
+          std::move(checkpoint.vectors),   checkpoint.content.value("units", nlohmann::json::object())};
 }
 
 bool Checkpointing::is_due(int n_steps, bool last) const {
@@ -45,6 +46,7 @@ void Checkpointing::write(const Results& results) {
   checkpoint.content["probes"] = results.probes_begun();
   checkpoint.content["steps"] = steps_.memory();
   checkpoint.content["stages"] = results.stages();
+  checkpoint.content["units"] = results.units_of_steps();
   checkpoint.content["begins stage"] = steps_.is_at_begin_of_stage();
   checkpoint.journal = results.journal(n_saved_steps_);
   checkpoint.vectors.merge(results.faces());

@@ -3,17 +3,13 @@
 #include "base/over_ranks.hpp"
 #include "base/units.hpp"
 #include "base/xml.hpp"
-#include "io/json.hpp"
-#include "model/events.hpp"
+#include "io/file.hpp"
 #include "model/fracture_table.hpp"
 #include "model/json_keys.hpp"
-
-#include <Teuchos_CommHelpers.hpp>
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace sprekk::model {
 
@@ -22,54 +18,6 @@ using assembly::Summary;
 using nlohmann::json;
 
 namespace {
-
-constexpr const char* oscillating_name = "oscillating";  ///< name of the VTU files
-
-/// Removes the files of oscillating faces of a previous run; ignores failures. Not collective.
-void remove_oscillating(const std::string& directory) {
-  std::error_code ignored;
-  for (const char* end : {"", ".pvd", "_0000.pvtu"})
-    std::filesystem::remove_all(directory + '/' + oscillating_name + end, ignored);
-}
-
-/// Removes tables and lists of written steps of a previous run. If the run is continued, only the tables of probes and
-/// of states are removed. Ignores failures. Not collective.
-void remove_tables(const std::string& directory, bool goes_on) {
-  std::error_code ignored;
-  std::filesystem::remove(directory + "/probes.h5", ignored);
-  for (const char* name : {"fractures.csv", "events.csv", "bulk.pvd", "fractures.pvd"})
-    if (!goes_on) std::filesystem::remove(directory + '/' + name, ignored);
-  for (const auto& name : names_of_tables()) std::filesystem::remove(directory + '/' + name + ".csv", ignored);
-  const std::filesystem::path probes = directory + "/probes";
-  for (const auto& entry : std::filesystem::directory_iterator(probes, ignored))
-    if (entry.path().extension() == ".csv") std::filesystem::remove(entry.path(), ignored);
-  std::filesystem::remove(probes, ignored);  // only if empty
-}
-
-io::Piece fractures_with(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs) {
-  auto piece = io::fracture_piece(mesh);
-  std::vector<Real> number, single;
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
-    number.push_back(mesh.fracture_faces[f].fracture);
-    single.push_back(mesh.fracture_faces[f].single);
-  }
-  piece.cell_data.push_back(io::data_array("fracture", 1, number));
-  piece.cell_data.push_back(io::data_array("single fracture", 1, single));
-  for (const auto& output : outputs)
-    if (output.entity == fields::Entity::fracture_face && output.summary.kind != Summary::integral)
-      piece.cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
-  return piece;
-}
-
-/// One block of faces per fracture.
-std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractures) {
-  std::vector<std::vector<LocalIndex>> faces(mesh.fracture_names.size());
-  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) faces[mesh.fracture_faces[f].fracture].push_back(f);
-  std::vector<io::Block> blocks;
-  for (std::size_t k = 0; k < faces.size(); ++k)
-    blocks.push_back({mesh.fracture_names[k], io::part_of(fractures, faces[k])});
-  return blocks;
-}
 
 /// Returns the first row, or null without rows.
 json first_of(const std::vector<io::SeriesRow>& rows) {
@@ -89,20 +37,6 @@ std::vector<io::SeriesRow> earlier_rows(const std::string& name, const json& beg
 
 }  // namespace
 
-void write_failure(const Comm& comm, const std::string& directory, const std::string& reason, bool only_replace) {
-  const std::string path = directory + "/results.json";
-  std::error_code unknown;
-  int wanted = !only_replace || std::filesystem::exists(path, unknown);
-  Teuchos::broadcast(comm, 0, 1, &wanted);
-  if (!wanted) return;
-  try {
-    io::make_directory(comm, directory);
-    io::write_json(comm, path,
-                   {{"status", "failed"}, {"reason", reason}, {"ranks", comm.getSize()}, {"steps", json::array()}});
-  } catch (const Error&) {  // the reason is reported in any case
-  }
-}
-
 Results::Results(Model& model, Scene as_read, std::string directory, const std::optional<EarlierResults>& earlier)
     : model_(model),
       directory_(std::move(directory)),
@@ -115,8 +49,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     const auto list = base::effective(as_read, "Sprekk");
     if (comm->getRank() != 0) return;
     io::write_file(directory_ + "/effective_input.xml", base::to_xml(list));
-    remove_oscillating(directory_);
-    remove_tables(directory_, earlier.has_value());
+    remove_earlier(earlier.has_value());
   });
   if (model_.scene().output.vtu) {
     std::vector<Real> written;
@@ -149,6 +82,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   if (earlier) {
     for (const auto& entry : earlier->journal) add(entry.at("step"));
     if (!earlier->stages.empty()) json_["stages"] = earlier->stages;
+    json_.update(earlier->units);
     json_["restarts"] = earlier->restarts;
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
@@ -222,6 +156,13 @@ std::vector<json> Results::journal(int begin) const {
       for (const auto& table : series_->tables())
         entries.back()["probes"][table.name] = table.rows[table.rows.size() - n_steps_ + k].values;
   }
+  return entries;
+}
+
+json Results::units_of_steps() const {
+  json entries = json::object();
+  for (const char* name : {"units", "tables"})
+    if (json_.contains(name)) entries[name] = json_[name];
   return entries;
 }
 
@@ -387,110 +328,8 @@ json Results::reactions() {
   return all;
 }
 
-/// Counts the oscillating faces and writes them to a file together with the state. Collective.
-long long Results::add_oscillating(const solve::StepReport& report) {
-  const auto& mesh = model_.mesh();
-  std::vector<Real> flags(report.oscillating.begin(), report.oscillating.end());
-  flags.resize(mesh.n_owned_fracture_faces);  // empty if no iterate was accepted
-  const long long here = std::count(flags.begin(), flags.end(), 1);
-  const auto n = base::sum_over_ranks(*mesh.comm, here);
-  if (n == 0 || !bulk_) return n;
-  auto piece = fractures_with(mesh, model_.system().outputs(model_.state()));
-  piece.cell_data.push_back(io::data_array("oscillating", 1, flags));
-  io::VtuSeries(mesh.comm, directory_, oscillating_name).write(report.time, piece);
-  return n;
-}
-
-void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
-  if (!bulk_) return;
-  const auto scope = model_.timers().scope("output");
-  const auto& mesh = model_.mesh();
-  auto bulk = io::bulk_piece(mesh);
-  const std::vector<Real> rank(mesh.n_owned_cells, mesh.comm->getRank());
-  bulk.cell_data.push_back(io::data_array("rank", 1, rank));
-  bulk.cell_data.push_back(
-      io::data_array("material", 1, {mesh.cell_region.begin(), mesh.cell_region.begin() + mesh.n_owned_cells}));
-  for (const auto& output : outputs) {
-    if (output.entity == fields::Entity::node)
-      bulk.point_data.push_back(io::nodal_data_array(bulk, output.name, output.n_components, output.values));
-    else if (output.entity == fields::Entity::cell)
-      bulk.cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
-  }
-  bulk_->write(time, bulk);
-  if (fractures_) fractures_->write(time, blocks_of(mesh, fractures_with(mesh, outputs)));
-}
-
-void Results::write_json() {
-  const auto scope = model_.timers().scope("results");
-  const auto begin = std::chrono::steady_clock::now();
-  const auto& comm = *model_.system().comm();
-  const auto here = static_cast<Real>(base::peak_memory_bytes());
-  json_["memory"] = {{"peak_bytes_largest_rank", base::max_over_ranks(comm, here)},
-                     {"peak_bytes_all_ranks", base::sum_over_ranks(comm, here)}};
-  auto& parts = json_["solver"]["parts"] = json::array();
-  for (const auto& cost : model_.newton().linear().solver().solver->costs()) {
-    const auto maximum = base::max_over_ranks(
-        comm, std::array<Real, 5>{cost.setup_seconds, cost.application_seconds, static_cast<Real>(cost.cycle_bytes),
-                                  static_cast<Real>(cost.messages), static_cast<Real>(cost.message_bytes)});
-    json of_levels = json::object();
-    if (!cost.n_unknowns.empty())
-      of_levels = {{"levels", cost.n_unknowns.size()},    {"unknowns_of_levels", cost.n_unknowns},
-                   {"ranks_of_levels", cost.n_ranks},     {"cycle_bytes_largest_rank", maximum[2]},
-                   {"messages_largest_rank", maximum[3]}, {"message_bytes_largest_rank", maximum[4]}};
-    parts.push_back({{"name", cost.name},
-                     {"setups", cost.n_setups},
-                     {"applications", cost.n_applications},
-                     {"setup_seconds", maximum[0]},
-                     {"application_seconds", maximum[1]},
-                     {"operator_complexity", cost.operator_complexity},
-                     {"bytes", base::sum_over_ranks(comm, static_cast<Real>(cost.bytes))}});
-    parts.back().update(of_levels);
-  }
-  json_["timing"] = json::object();
-  for (const auto& phase : model_.timers().phases())
-    json_["timing"][with_underscores(phase.name)] = {
-        {"seconds", phase.seconds}, {"cpu_seconds", phase.cpu_seconds}, {"count", phase.count}};
-  io::write_json(comm, directory_ + "/results.json", json_);
-  if (series_) series_->write_all();
-  base::collectively(comm, [&] {
-    if (comm.getRank() != 0 || singles_.empty()) return;
-    io::write_file(directory_ + "/fractures.csv", to_csv(json_["single_fractures"], singles_));
-    const auto events =
-        catalogue_ ? catalogue_csv(json_, singles_) : events_csv(json_, singles_, model_.setting().start);
-    if (!events.empty()) io::write_file(directory_ + "/events.csv", events);
-    for (const auto& [name, text] : tables_csv(json_)) io::write_file(directory_ + '/' + name + ".csv", text);
-  });
-  n_written_ = static_cast<int>(json_["steps"].size());
-  last_write_ = std::chrono::steady_clock::now();
-  write_took_ = last_write_ - begin;
-}
-
 std::vector<std::string> Results::fracture_digest() const {
   return singles_.empty() ? std::vector<std::string>() : digest(json_["single_fractures"], singles_);
-}
-
-void Results::finish(const std::string& status, const std::string& reason) {
-  json_["status"] = status;
-  if (!reason.empty()) json_["reason"] = reason;
-  try {
-    write_json();
-  } catch (const Error& error) {
-    finish_in_place(reason.empty() ? error.what() : reason);
-    throw;
-  }
-}
-
-/// Overwrites the file on a full disk. Without mesh and solver there is space for all steps, or for the earlier ones.
-void Results::finish_in_place(const std::string& reason) {
-  json_["status"] = "failed";
-  json_["reason"] = reason;
-  auto short_version = json_;
-  for (const char* part : {"solver", "blocks", "partition", "timing", "memory"}) short_version.erase(part);
-  const std::string path = directory_ + "/results.json";
-  if (io::overwrite_json(*model_.system().comm(), path, short_version)) return;
-  auto& steps = short_version["steps"];
-  steps.erase(steps.begin() + std::min<std::ptrdiff_t>(n_written_, steps.size()), steps.end());
-  io::overwrite_json(*model_.system().comm(), path, short_version);
 }
 
 }  // namespace sprekk::model

@@ -28,6 +28,7 @@ struct EarlierResults {
   nlohmann::json probes = nlohmann::json::object();   ///< Results::probes_begun()
   nlohmann::json stages = nlohmann::json::array();    ///< Results::stages()
   io::NamedVectors faces = {};                        ///< Results::faces()
+  nlohmann::json units = nlohmann::json::object();    ///< Results::units_of_steps()
 };
 
 /// Writer of the states of a model into a directory, step by step. All files are complete after every write. All
@@ -45,6 +46,8 @@ class Results {
   nlohmann::json restarts() const { return json_.value("restarts", nlohmann::json::array()); }
   /// Stages that have begun, with their meshes.
   nlohmann::json stages() const { return json_.value("stages", nlohmann::json::array()); }
+  /// Entries with the units of quantities in the steps, as far as there are any.
+  nlohmann::json units_of_steps() const;
   int n_steps() const { return n_steps_; }
   /// Data of fracture faces in events that may continue, for a checkpoint.
   io::NamedVectors faces() const { return catalogue_ ? catalogue_->memory(model_.mesh()) : io::NamedVectors(); }
@@ -80,6 +83,7 @@ class Results {
   long long add_oscillating(const solve::StepReport& report);
   bool fields_are_due(const StepTaken& step) const;
   void write_fields(Real time, const std::vector<assembly::OutputField>& outputs);
+  void remove_earlier(bool goes_on) const;
   void write_json();
   void finish_in_place(const std::string& reason);
 

@@ -1,6 +1,8 @@
 #include "solve/balance_check.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/host_table.hpp"
 #include "base/over_ranks.hpp"
@@ -10,57 +12,72 @@ namespace {
 
 constexpr Real allowed = 1e-7;
 
-/// Calls visit(kind, row) for the rows of balances of this rank, constrained or not.
+}  // namespace
+
+BalanceCheck::BalanceCheck(fields::BlockProblem& problem) : problem_(problem) {
+  std::vector<std::string> quantities;
+  for (const auto& block : problem.blocks()) {
+    const auto found = std::find(quantities.begin(), quantities.end(), block.quantity);
+    quantity_.push_back(block.balance ? static_cast<int>(found - quantities.begin()) : -1);
+    if (block.balance && found == quantities.end()) quantities.push_back(block.quantity);
+  }
+  flows_.assign(quantities.size(), 0);
+  surplus_ = flows_;
+  changes_.assign(quantities.size(), 0);
+}
+
+bool BalanceCheck::any_changes() const { return std::count(changes_.begin(), changes_.end(), 1) > 0; }
+
+/// Calls visit(quantity, row) for the rows of balances of this rank, constrained or not.
 template <class Visit>
-void for_each_row(const fields::BlockProblem& problem, const fields::BlockVector& r, bool constrained,
-                  const Visit& visit) {
+void BalanceCheck::for_each_row(const fields::BlockVector& r, bool constrained, const Visit& visit) const {
   for (std::size_t b = 0; b < r.size(); ++b) {
-    const auto& block = problem.blocks()[b];
-    if (!block.balance) continue;
+    if (quantity_[b] < 0) continue;
     const auto rows = r[b]->getLocalViewHost(Tpetra::Access::ReadOnly);
-    const auto flags = base::to_host(problem.constrained(b));
+    const auto flags = base::to_host(problem_.constrained(static_cast<int>(b)));
     for (std::size_t i = 0; i < rows.extent(0); ++i)
-      if ((i < flags.extent(0) && flags(i) != 0) == constrained) visit(block.advected ? 1 : 0, rows(i, 0));
+      if ((i < flags.extent(0) && flags(i) != 0) == constrained) visit(quantity_[b], rows(i, 0));
   }
 }
 
-}  // namespace
-
 void BalanceCheck::start(const std::vector<fields::Measure>& measures, Real tolerance) {
-  for (const auto& block : problem_.blocks())
+  for (std::size_t b = 0; b < quantity_.size(); ++b)
     for (const auto& measure : measures)
-      if (block.balance && block.name == measure.name && !(measure.value <= tolerance))
-        changes_[block.advected ? 1 : 0] = true;
+      if (quantity_[b] >= 0 && problem_.blocks()[b].name == measure.name && !(measure.value <= tolerance))
+        changes_[quantity_[b]] = 1;
 }
 
 void BalanceCheck::note(const fields::BlockVector& r) {
-  if (!changes_[0] && !changes_[1]) return;
-  std::array<Real, 4> sums{};
-  for_each_row(problem_, r, false, [&](int kind, Real row) {
-    sums[kind] += row;
-    sums[2 + kind] += std::abs(row);
+  if (!any_changes()) return;
+  const std::size_t n = flows_.size();
+  std::vector<Real> sums(2 * n, 0);
+  for_each_row(r, false, [&](int quantity, Real row) {
+    sums[quantity] += row;
+    sums[n + quantity] += std::abs(row);
   });
   sums = base::sum_over_ranks(*problem_.comm(), sums);
-  for (int kind = 0; kind < 2; ++kind) {
-    surplus_[kind] = std::abs(sums[kind]);
-    if (!started_) flows_[kind] = sums[2 + kind];
+  for (std::size_t k = 0; k < n; ++k) {
+    surplus_[k] = std::abs(sums[k]);
+    if (!started_) flows_[k] = sums[n + k];
   }
   started_ = true;
 }
 
 bool BalanceCheck::closes(const fields::Evaluation& x) const {
-  if (!changes_[0] && !changes_[1]) return true;
-  const auto within = [&](const Sums& flows) {
-    const auto is_small = [&](int kind) { return !changes_[kind] || surplus_[kind] <= allowed * flows[kind]; };
-    return is_small(0) && is_small(1);
+  if (!any_changes()) return true;
+  const auto within = [&](const std::vector<Real>& flows) {
+    for (std::size_t k = 0; k < flows.size(); ++k)
+      if (changes_[k] && !(surplus_[k] <= allowed * flows[k])) return false;
+    return true;
   };
   if (within(flows_)) return true;
   auto r = fields::create_like(x.x());
   problem_.raw_residual(x, r);
-  Sums through{};
-  for_each_row(problem_, r, true, [&](int kind, Real row) { through[kind] += std::abs(row); });
-  through = base::sum_over_ranks(*problem_.comm(), through);
-  return within({flows_[0] + through[0], flows_[1] + through[1]});
+  auto flows = std::vector<Real>(flows_.size(), 0);
+  for_each_row(r, true, [&](int quantity, Real row) { flows[quantity] += std::abs(row); });
+  flows = base::sum_over_ranks(*problem_.comm(), flows);
+  for (std::size_t k = 0; k < flows.size(); ++k) flows[k] += flows_[k];
+  return within(flows);
 }
 
 }  // namespace sprekk::solve

@@ -3,20 +3,20 @@
 
 #include "fields/block_problem.hpp"
 
-#include <array>
+#include <vector>
 
 namespace sprekk::solve {
 
 /// Sums of the rows of balances (Block::balance) in one solve. Round-off of large levels may hide the residuals of
 /// single rows, but fluxes cancel in the sum of all rows: stored quantity minus inflow. It is compared with the sum of
 /// |row| in the first iterate, which is the change of the flows in the step, plus the flows through constrained
-/// unknowns. Advected balances have a sum of their own.
+/// unknowns. Each quantity (Block::quantity) has a sum of its own.
 class BalanceCheck {
  public:
-  explicit BalanceCheck(fields::BlockProblem& problem) : problem_(problem) {}
+  explicit BalanceCheck(fields::BlockProblem& problem);
 
-  /// Takes the measures of the first iterate. If those of one kind of balances are at most the tolerance, the solve
-  /// does not change these balances, and their sum has no scale: it is not checked. Local.
+  /// Takes the measures of the first iterate. If those of a quantity are at most the tolerance, the solve does not
+  /// change its balances, and their sum has no scale: it is not checked. Local.
   void start(const std::vector<fields::Measure>& measures, Real tolerance);
 
   /// Includes an iterate with the residual r. Collective.
@@ -25,11 +25,14 @@ class BalanceCheck {
   bool closes(const fields::Evaluation& x) const;
 
  private:
-  using Sums = std::array<Real, 2>;  ///< not advected, advected
+  bool any_changes() const;
+  template <class Visit>
+  void for_each_row(const fields::BlockVector& r, bool constrained, const Visit& visit) const;
 
   fields::BlockProblem& problem_;
-  Sums flows_{}, surplus_{};
-  std::array<bool, 2> changes_{};
+  std::vector<int> quantity_;          // [block] number of its quantity; -1: its rows are no balances
+  std::vector<Real> flows_, surplus_;  // [quantity]
+  std::vector<char> changes_;          // [quantity]
   bool started_ = false;
 };
 

@@ -175,7 +175,7 @@ void GroupChange::expand(const std::vector<Real>& s, Vector& c) const {
     }
     A->apply(z, c, Teuchos::NO_TRANS, 1, 1);
   }
-  const auto flags = problem_.constrained(a_);
+  const auto flags = base::to_host(problem_.constrained(a_));
   const auto value = c.getLocalViewHost(Tpetra::Access::ReadWrite);
   for (std::size_t i = 0; i < value.extent(0); ++i)
     if (flags(i)) value(i, 0) = 0;

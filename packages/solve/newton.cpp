@@ -73,6 +73,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
   StatusType getStatus() const override { return status_; }
   /// Returns the first iterate whose measures are at most the tolerance, if another iteration followed; else empty.
   const BlockVector& accepted() const { return accepted_; }
+  const std::vector<fields::Measure>& measures_of_accepted() const { return measures_of_accepted_; }
   std::ostream& print(std::ostream& stream, int indent) const override {
     stream << std::string(indent, ' ');
     for (const auto& measure : report_.measures) stream << fmt::format("{} {:.3e}  ", measure.name, measure.value);
@@ -89,6 +90,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
     if (!accepted_.empty()) return;
     accepted_ = fields::create_like(x);
     fields::copy(x, accepted_);
+    measures_of_accepted_ = report_.measures;
   }
   void fail(const std::string& reason) {
     report_.reason = reason;
@@ -103,6 +105,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
   BalanceCheck balances_;
   int n_additional_ = 0;  // iterations after the measures have converged
   BlockVector accepted_;
+  std::vector<fields::Measure> measures_of_accepted_;
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
@@ -275,6 +278,7 @@ NewtonReport Newton::solve(Evaluation& x) {
   if (report.stopped) return report;
   const bool returns_accepted = !report.converged && !test->accepted().empty();  // an additional iteration failed
   x = returns_accepted ? Evaluation(test->accepted()) : dynamic_cast<const NoxGroup&>(solver->getSolutionGroup()).x();
+  if (returns_accepted) report.measures = test->measures_of_accepted();
   report.converged = report.converged || returns_accepted;
   for (auto& linear : report.linear_solves) linear.used = report.converged;
   if (report.iterations > 0) {

@@ -39,6 +39,10 @@ class StressIntensity(ProgramTest):
         self.assertEqual(len(again), len(whole))
         for a, b in zip(again, whole):
             self.assertTrue(math.isclose(float(a["K_I [Pa*m^0.5]"]), float(b["K_I [Pa*m^0.5]"]), rel_tol=1e-8))
+        self.call("run", self.scene(SCENE), "--output", "part", *sets, "--restart")  # no step is left
+        self.assertEqual(self.rows("part"), again)
+        for name in ("units", "tables"):
+            self.assertEqual(self.results("part")[name], content[name])
 
     def test_pore_pressure(self):
         """A linear pore pressure, with the displacement that frees the plane of its stress, leaves K of a crack unchanged."""

@@ -372,11 +372,12 @@ std::string in_situ_doubt(const Setting& setting) {
                      "the difference displaces the rock at the start", "check \"density\" and \"gravity\"");
 }
 
+using Starts = std::vector<StartOfFace>;
+
 /// Warns about fractures whose initial stress exceeds their strength. Collective.
-std::string strength_doubt(const Setting& setting) {
+std::string strength_doubt(const Setting& setting, const Starts& starts) {
   const auto& mesh = setting.mesh;
   if (initial_stress(setting.scene, mesh).empty()) return "";
-  const auto starts = starts_of_faces(setting);
   std::vector<Real> beyond(mesh.single_fractures.size(), 0), all(beyond);
   for (std::size_t f = 0; f < starts.size(); ++f) {
     const auto& t = starts[f].traction;
@@ -410,11 +411,10 @@ std::string strength_doubt(const Setting& setting) {
 }
 
 /// Warns about fractures whose cells do not resolve the cohesive zone of a rupture. Collective.
-std::vector<std::string> cohesive_zone_doubts(const Setting& setting) {
+std::vector<std::string> cohesive_zone_doubts(const Setting& setting, const Starts& starts) {
   const auto& mesh = setting.mesh;
   const std::size_t n = mesh.single_fractures.size();
   std::vector<Real> ratio(n, huge), edge(n, huge), zone(n, huge);  // of the least resolved face
-  const auto starts = starts_of_faces(setting);
   const auto edge_of = [&](std::size_t f) { return std::pow(mesh.fracture_faces[f].area, 1.0 / (mesh.dim() - 1)); };
   for (std::size_t f = 0; f < starts.size(); ++f) {
     const auto k = mesh.fracture_faces[f].single;
@@ -443,11 +443,10 @@ std::vector<std::string> cohesive_zone_doubts(const Setting& setting) {
 
 /// Warns about joints in situ whose sides overlap under a higher compression, or whose unloaded aperture is the larger
 /// one of two. Collective.
-std::vector<std::string> in_situ_doubts(const Setting& setting) {
+std::vector<std::string> in_situ_doubts(const Setting& setting, const Starts& starts) {
   const auto& mesh = setting.mesh;
   const std::size_t n = mesh.single_fractures.size();
   std::vector<Real> overlap(n, huge), smaller(n, 0), larger(n, 0);
-  const auto starts = starts_of_faces(setting);
   for (std::size_t f = 0; f < starts.size(); ++f) {
     const auto k = mesh.fracture_faces[f].single;
     overlap[k] = std::min(overlap[k], starts[f].overlap);
@@ -486,9 +485,10 @@ std::vector<std::string> Mechanics::Warnings::of_input(const Setting& setting, c
   const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
   add(joint_doubts(setting));
   if (!setting.mesh.fracture_names.empty()) {
-    all.push_back(strength_doubt(setting));
-    add(in_situ_doubts(setting));
-    add(cohesive_zone_doubts(setting));
+    const auto starts = starts_of_faces(setting);
+    all.push_back(strength_doubt(setting, starts));
+    add(in_situ_doubts(setting, starts));
+    add(cohesive_zone_doubts(setting, starts));
   }
   std::erase(all, "");
   return all;

@@ -156,6 +156,24 @@ TEST(BandisInSitu, UsesAGivenJointAperture) {
   EXPECT_NEAR(joint.initial_aperture, 0.12e-3 + 8e6 / (law.stiffness + 8e6 / law.maximum), 1e-18);
 }
 
+/// The initial shear traction of open sides is released: only the plastic jump remains.
+TEST(JointStart, HasNoElasticJumpIfTheSidesAreApart) {
+  JointParameters joint;
+  joint.law.elastic = LinearShear{1 / 1e9};
+  joint.law.friction = CoulombFriction{0.6};
+  joint.plastic_jump = {1e-4, -2e-4};
+  const Traction shear = {0, 2e6, -3e6};
+  for (const int dim : {2, 3})
+    for (const Real normal : {-8e6, 0.0, 1e6}) {
+      const auto start = start_of(joint, {normal, shear[1], dim == 3 ? shear[2] : 0}, dim);
+      for (int k = 1; k < dim; ++k) {
+        const Real borne = normal < 0 ? shear[k] : 0;
+        EXPECT_EQ(start.traction[k], borne) << normal;
+        EXPECT_NEAR(start.jump[k], joint.plastic_jump[k - 1] + borne / 1e9, 1e-18) << normal;
+      }
+    }
+}
+
 TEST(JointInSitu, RefusesStatesThatItCannotHave) {
   const auto refused = [](const JointParameters& measured, const Traction& traction) {
     return message_of([&] {

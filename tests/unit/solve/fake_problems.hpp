@@ -389,7 +389,10 @@ class CarriedProblem : public BlockProblem {
     blocks_.push_back({"p", map, 1, 1, 1, Teuchos::null, {}});
     blocks_.push_back({"T", map, 1, 1, 1, Teuchos::null, {}});
     blocks_.back().advected = true;
-    for (auto& block : blocks_) block.balance = true;
+    for (auto& block : blocks_) {
+      block.balance = true;
+      block.quantity = block.name;
+    }
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
         Filler one(map, map);

@@ -134,6 +134,41 @@ TEST(Newton, CarriesAQuantityWithTheNewFlow) {
     }
 }
 
+/// A balance whose sum never closes. Each iteration decreases x by 1; only x = -1 has a small measure.
+class OpenBalance : public ScalarProblem {
+ public:
+  explicit OpenBalance(const RCP<const Comm>& comm)
+      : ScalarProblem(
+            comm, comm->getSize(), [](Real, Real, Real) { return 1.0; }, [](Real, Real, Real) { return 1.0; }),
+        blocks_(ScalarProblem::blocks()) {
+    blocks_.front().balance = true;
+  }
+  const std::vector<Block>& blocks() const override { return blocks_; }
+  std::vector<Measure> measures(const Evaluation& at, const BlockVector&) override {
+    return {{"x", std::abs(at.x()[0]->getData()[0] + 1) < 0.5 ? accepted : 1}};
+  }
+  Real merit(const Evaluation& at, const BlockVector&) override { return std::pow(at.x()[0]->getData()[0] + 1000, 2); }
+  static constexpr Real accepted = 1e-13;
+
+ private:
+  std::vector<Block> blocks_;
+};
+
+/// If additional iterations for the sum of a balance fail, the solve returns the iterate before them, with its
+/// measures.
+TEST(Newton, ReturnsToTheIterateBeforeAdditionalIterations) {
+  OpenBalance problem(Tpetra::getDefaultComm());
+  Newton newton(problem, {});
+  auto x = problem.constant(0);
+  problem.set_time(1, 1);
+  const auto report = newton.solve(x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_GT(report.iterations, 1);
+  ASSERT_EQ(report.measures.size(), 1u);
+  EXPECT_EQ(report.measures[0].value, OpenBalance::accepted);
+  EXPECT_NEAR(x[0]->getData()[0], -1, 1e-12);
+}
+
 TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
   GridProblem problem(Tpetra::getDefaultComm(), {2, 6, 6, false, true, -1});
   Newton newton(problem, {});
