@@ -18,7 +18,7 @@ Measured measure(model::Scene scene, const model::Quantity& quantity, RCP<const 
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
   model::Model model(scene, comm);
-  auto estimator = model::make_error_estimator(model);
+  auto estimator = model::make_error_estimator(model, 0);
   estimate::Goals goals(estimator, model.scene().accuracy->functionals());
   std::optional<Real> lack;
   const auto times = model.scene().time.times();

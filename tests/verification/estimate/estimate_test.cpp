@@ -20,7 +20,7 @@ struct Errors {
 };
 
 Errors estimate_of(model::Model& model) {
-  auto estimator = model::make_error_estimator(model);
+  auto estimator = model::make_error_estimator(model, 0);
   const auto outputs = Outputs(model).all();
   const auto all = estimator(model::present_state(model, outputs));
   return {all.norms.at(0), all.of_outputs[0].value_or(estimate::OutputError{}), all.fields,

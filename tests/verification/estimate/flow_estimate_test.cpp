@@ -117,7 +117,7 @@ MeasuredFlux measure(model::Scene scene, const Exact& exact, const model::Quanti
   scene.accuracy.emplace().quantities["goal"] = quantity;
   scene.accuracy->quantities["goal"].relative = 0.01;
   model::Model model(scene, Tpetra::getDefaultComm());
-  auto estimator = model::make_error_estimator(model);
+  auto estimator = model::make_error_estimator(model, 0);
   estimate::Goals goals(estimator, model.scene().accuracy->functionals());
   estimate::ErrorEstimate estimate;
   const auto times = model.scene().time.times();

@@ -38,7 +38,7 @@ TEST(Goals, ErrorsOfCracksAndTheirBounds) {
       SCOPED_TRACE(fmt::format("{} of order {}", crack.scene, order));
       model::Model model(scene_of(crack, order), Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged);
-      auto estimator = model::make_error_estimator(model);
+      auto estimator = model::make_error_estimator(model, 0);
       const auto outputs = Outputs(model).all();
       const auto state = model::present_state(model, outputs);
       const auto estimate = estimator(state);
@@ -80,7 +80,7 @@ TEST(Goals, ErrorsOfTearing) {
           sets.emplace_back(entry);
       model::Model model(read_scene("verification/tearing_3d.xml", sets), Tpetra::getDefaultComm());
       ASSERT_TRUE(model.step_to(1).converged);
-      auto estimator = model::make_error_estimator(model);
+      auto estimator = model::make_error_estimator(model, 0);
       const auto outputs = Outputs(model).all();
       const auto state = model::present_state(model, outputs);
       estimate::Goals goals(estimator, model.scene().accuracy->functionals());
@@ -106,7 +106,7 @@ TEST(Goals, ErrorsOfReactions) {
                     "Accuracy.quantities.goal.component=x", "Accuracy.quantities.goal.relative=0.01"}),
         Tpetra::getDefaultComm());
     ASSERT_TRUE(model.step_to(model.scene().time.times().back()).converged);
-    auto estimator = model::make_error_estimator(model);
+    auto estimator = model::make_error_estimator(model, 0);
     const auto outputs = Outputs(model).all();
     const auto state = model::present_state(model, outputs);
     estimate::Goals goals(estimator, model.scene().accuracy->functionals());

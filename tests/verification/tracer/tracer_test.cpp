@@ -270,7 +270,7 @@ TEST(Tracer, MovesLikeHeat) {
       std::optional<estimate::ErrorEstimator> estimator;
       std::optional<estimate::Goals> goals;
       if (estimates) {
-        estimator.emplace(model::make_error_estimator(model));
+        estimator.emplace(model::make_error_estimator(model, 0));
         goals.emplace(*estimator, model.scene().accuracy->functionals());
       }
       for (const Real t : {0.02, 0.05, 0.08}) {
