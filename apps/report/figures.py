@@ -226,7 +226,7 @@ def headline(content):
     """Returns sentences with the convergence of the run and the fracture with the largest slip."""
     steps = content["steps"]
     done = content["status"] == "completed" and all(step["converged"] for step in steps)
-    found = ["All steps converged." if done else f"The run {content['status']}; see the checks."]
+    found = ["All steps converged." if done else f"Status of the run: {content['status']}."]
     last = next((step for step in reversed(steps) if "fractures" in step), steps[-1])
     fractures = without_noise(singles(content, last, []) or last.get("fractures", {}))
     slip = {name: one.get("max_slip") or 0 for name, one in fractures.items()}

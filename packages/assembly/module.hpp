@@ -87,7 +87,8 @@ struct History {
   std::string name;
   fields::Entity entity;
   int n_components;
-  bool is_amount = false;  ///< see fields::Field
+  bool is_amount = false;      ///< see fields::Field
+  bool is_transferred = true;  ///< false: has no values on a bisected mesh, e.g. numbers of the faces of a cell
 };
 
 /// Number derived from the components of a mean or integral over a fracture; no value: undefined.

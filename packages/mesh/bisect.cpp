@@ -165,7 +165,12 @@ Bisection::Cell Bisection::child(const Cell& parent, int keeps, GlobalIndex midd
 std::vector<GlobalIndex> Bisection::refine(const std::vector<GlobalIndex>& cells, int times) {
   Middles middles(coordinates_, dim_);
   std::vector<int> wanted(cells_.size(), 0);
-  for (const GlobalIndex cell : cells) wanted[cell] = times;
+  for (const GlobalIndex cell : cells) {
+    SPREKK_CHECK(cell >= 0 && cell < static_cast<GlobalIndex>(cells_.size()),
+                 "cell {} cannot be bisected: the mesh has {} cells; has the mesh changed since the checkpoint?", cell,
+                 cells_.size());
+    wanted[cell] = times;
+  }
   std::vector<GlobalIndex> parent(cells_.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto hangs = [&](const Cell& cell) {

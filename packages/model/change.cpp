@@ -142,7 +142,7 @@ Storage storage_of(const std::vector<std::unique_ptr<assembly::Module>>& modules
     for (const auto& [field, scale, row, null_space, group, enriches, into, balance, unbounded, augmented, reactions] :
          declared.unknowns)
       storage.fields[field.name] = {field.entity, field.n_components};
-    for (const auto& [name, entity, n, is_amount] : declared.history)
+    for (const auto& [name, entity, n, is_amount, is_transferred] : declared.history)
       storage.histories[module->name() + ": " + name] = {entity, n};
   }
   return storage;

@@ -69,6 +69,19 @@ void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
   }
 }
 
+/// Throws an Error if the scene refines the mesh during the run and a module cannot follow.
+void check_transfer(const Scene& scene, const std::vector<std::unique_ptr<assembly::Module>>& modules,
+                    const mesh::Mesh& mesh) {
+  if (!scene.accuracy || !scene.accuracy->refines_during_run()) return;
+  for (const auto& module : modules)
+    for (const auto& history : module->declare(mesh).history)
+      SPREKK_CHECK(
+          history.is_transferred,
+          "{}: Sprekk > Accuracy > \"refinement\": is \"during the run\", not available with {}: \"{}\" has no "
+          "values on a refined mesh",
+          scene.origin, module->name(), history.name);
+}
+
 }  // namespace
 
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
@@ -109,6 +122,7 @@ Model::Draft Model::drafted(Scene scene, const std::string& unconstrained) const
     draft.modules = make_modules(draft.scene, mesh);
     if (more_modules_)
       for (auto& module : more_modules_(mesh)) draft.modules.push_back(std::move(module));
+    check_transfer(draft.scene, draft.modules, mesh);
     const bool constrained = std::any_of(draft.modules.begin(), draft.modules.end(), [](const auto& module) {
       const auto* forces = dynamic_cast<const assembly::Supporting*>(module.get());
       return forces && forces->constrains_bodies();
@@ -149,7 +163,9 @@ Model::Draft Model::drafted_change(const Scene& before, const Scene& changed) co
   auto draft = drafted(std::move(prepared.value));
   std::vector<std::string> lines;
   physics::for_each_physics([&]<physics::HasEstimate P>(P) {
-    if (const auto why = P::Estimate::missing(draft.scene); draft.scene.output.error_estimate && !why.empty())
+    if (const auto why = P::Estimate::missing(draft.scene); !why.empty() && draft.scene.accuracy)
+      lines.push_back("Accuracy: " + why);
+    else if (!why.empty() && draft.scene.output.error_estimate)
       lines.push_back("Output > \"error estimate\": " + why);
   });
   physics::for_each_physics([&]<physics::HasChange P>(P) {

@@ -279,6 +279,7 @@ void Results::follow_change() {
   if (const auto& accuracy = model_.scene().accuracy) {
     goals_.emplace(*estimator_, accuracy->functionals());
     json_.update(mesh_summary(model_.mesh()));
+    json_["blocks"] = block_summary(model_.system());
     if (fractures_) add_intersections();
   }
   tables_.emplace(model_);

@@ -172,9 +172,9 @@ Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoint
   return Ending::interrupted;
 }
 
-/// Evaluates the accuracy of the last state, if the scene has the section Accuracy.
+/// Evaluates the accuracy of the last state, if the scene has the section Accuracy and a step was taken.
 void judge(const Model& model, Results& results, Adaptation& adaptation, base::Log& log) {
-  if (!model.scene().accuracy) return;
+  if (!model.scene().accuracy || results.goals().estimates().empty()) return;
   adaptation.judge(model, results.goals());
   results.add_accuracy(adaptation.summary());
   for (const auto& verdict : adaptation.verdicts()) log.info("{}", verdict.line());

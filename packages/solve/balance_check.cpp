@@ -8,11 +8,6 @@
 #include "base/over_ranks.hpp"
 
 namespace sprekk::solve {
-namespace {
-
-constexpr Real allowed = 1e-7;
-
-}  // namespace
 
 BalanceCheck::BalanceCheck(fields::BlockProblem& problem) : problem_(problem) {
   std::vector<std::string> quantities;
@@ -63,21 +58,22 @@ void BalanceCheck::note(const fields::BlockVector& r) {
   started_ = true;
 }
 
-bool BalanceCheck::closes(const fields::Evaluation& x) const {
-  if (!any_changes()) return true;
-  const auto within = [&](const std::vector<Real>& flows) {
+Real BalanceCheck::imbalance(const fields::Evaluation& x) const {
+  if (!any_changes()) return 0;
+  const auto over = [&](const std::vector<Real>& flows) {
+    Real largest = 0;
     for (std::size_t k = 0; k < flows.size(); ++k)
-      if (changes_[k] && !(surplus_[k] <= allowed * flows[k])) return false;
-    return true;
+      if (changes_[k] && surplus_[k] > 0) largest = std::max(largest, surplus_[k] / flows[k]);
+    return largest;
   };
-  if (within(flows_)) return true;
+  if (const Real found = over(flows_); found <= allowed) return found;
   auto r = fields::create_like(x.x());
   problem_.raw_residual(x, r);
   auto flows = std::vector<Real>(flows_.size(), 0);
   for_each_row(r, true, [&](int quantity, Real row) { flows[quantity] += std::abs(row); });
   flows = base::sum_over_ranks(*problem_.comm(), flows);
   for (std::size_t k = 0; k < flows.size(); ++k) flows[k] += flows_[k];
-  return within(flows);
+  return over(flows);
 }
 
 }  // namespace sprekk::solve

@@ -21,8 +21,11 @@ class BalanceCheck {
 
   /// Includes an iterate with the residual r. Collective.
   void note(const fields::BlockVector& r);
-  /// Returns whether the sums of the last iterate x are at most 1e-7 of these flows. Collective.
-  bool closes(const fields::Evaluation& x) const;
+  /// Returns the largest sum of the last iterate x over these flows; 0 if no balance changes. If the sum is larger than
+  /// `allowed` of the flows in the first iterate, those through constrained unknowns are included. Collective.
+  Real imbalance(const fields::Evaluation& x) const;
+
+  static constexpr Real allowed = 1e-7;  ///< imbalance of a solution
 
  private:
   bool any_changes() const;

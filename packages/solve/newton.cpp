@@ -5,7 +5,9 @@
 #include <NOX_LineSearch_UserDefinedFactory.H>
 #include <NOX_StatusTest_Generic.H>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -25,8 +27,8 @@ constexpr int max_lagged = 60;  // steps with lagged coefficients
 constexpr int max_additional = 2;
 
 /// Convergence test. Converged: all measures are at most the tolerance. If round-off hides an error of the sums of
-/// balances, up to two iterations follow. Failed: a measure or the residual is not finite, no progress, too many
-/// iterations, or stopped. Saves the history and the reason.
+/// balances, up to two iterations follow while they halve it. Failed: a measure or the residual is not finite, no
+/// progress, too many iterations, or stopped. Saves the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
   MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const NewtonStep::Report& step,
@@ -50,10 +52,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
     if (!std::isfinite(group.getNormF())) {
       fail("the residual is not finite");
     } else if (within_tolerance) {
-      if (needs_another_iteration(group))
-        save(group.x().x());
-      else
-        status_ = NOX::StatusTest::Converged;
+      if (!needs_another_iteration(group)) status_ = NOX::StatusTest::Converged;
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
     } else if ((picard_.lags() && picard_.n_steps() >= max_lagged) ||
@@ -71,7 +70,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
   }
 
   StatusType getStatus() const override { return status_; }
-  /// Returns the first iterate whose measures are at most the tolerance, if another iteration followed; else empty.
+  /// Returns the iterate with the smallest error of the sums of balances of those whose measures are at most the
+  /// tolerance, if it is not the last one; otherwise empty.
   const BlockVector& accepted() const { return accepted_; }
   const std::vector<fields::Measure>& measures_of_accepted() const { return measures_of_accepted_; }
   std::ostream& print(std::ostream& stream, int indent) const override {
@@ -81,13 +81,21 @@ class MeasureTest : public NOX::StatusTest::Generic {
   }
 
  private:
+  /// Saves the iterate if another one follows and it is the best so far.
   bool needs_another_iteration(const NoxGroup& group) {
-    if (report_.iterations == 0 || n_additional_ == max_additional || balances_.closes(group.x())) return false;
+    const Real imbalance = report_.iterations == 0 ? 0 : balances_.imbalance(group.x());
+    const bool is_best = imbalance <= least_imbalance_;
+    const bool is_last = n_additional_ == max_additional || (n_additional_ > 0 && imbalance > 0.5 * least_imbalance_);
+    if (imbalance <= BalanceCheck::allowed || is_last) {
+      if (is_best) accepted_.clear();
+      return false;
+    }
+    if (is_best) save(group.x().x());
+    least_imbalance_ = std::min(least_imbalance_, imbalance);
     ++n_additional_;
     return true;
   }
   void save(const BlockVector& x) {
-    if (!accepted_.empty()) return;
     accepted_ = fields::create_like(x);
     fields::copy(x, accepted_);
     measures_of_accepted_ = report_.measures;
@@ -105,6 +113,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
   BalanceCheck balances_;
   int n_additional_ = 0;  // iterations after the measures have converged
   BlockVector accepted_;
+  Real least_imbalance_ = std::numeric_limits<Real>::infinity();
   std::vector<fields::Measure> measures_of_accepted_;
   StatusType status_ = NOX::StatusTest::Unevaluated;
 };
@@ -276,7 +285,7 @@ NewtonReport Newton::solve(Evaluation& x) {
   report.advected_solves = found.advected_solves;
   report.iterations = static_cast<int>(report.linear_solves.size());
   if (report.stopped) return report;
-  const bool returns_accepted = !report.converged && !test->accepted().empty();  // an additional iteration failed
+  const bool returns_accepted = !test->accepted().empty();  // additional iterations failed or had larger errors
   x = returns_accepted ? Evaluation(test->accepted()) : dynamic_cast<const NoxGroup&>(solver->getSolutionGroup()).x();
   if (returns_accepted) report.measures = test->measures_of_accepted();
   report.converged = report.converged || returns_accepted;

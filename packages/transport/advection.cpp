@@ -168,9 +168,10 @@ class AdvectionModule final : public assembly::Module, public assembly::Steps, p
     assembly::Declaration d;
     for (const auto& row : rows()) d.couplings.push_back({Where::loop, row, columns()});
     d.carries = rows();
-    if (corrects()) d.history.push_back({"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_saved(n)});
+    if (corrects())
+      d.history.push_back({"antidiffusion" + where_->place(), Where::entity, Antidiffusion::n_saved(n), false, false});
     if constexpr (Where::has_passed)
-      if (where_->n_passed() > 0) d.history.push_back({"passed", Where::entity, where_->n_passed()});
+      if (where_->n_passed() > 0) d.history.push_back({"passed", Where::entity, where_->n_passed(), false, false});
     return d;
   }
 

@@ -82,7 +82,7 @@ class FractureFlow final : public assembly::Module,
     flow_.add_jacobian(state, J);
     outflow_.add_jacobian(state, J);
   }
-  /// Computes hydraulic apertures; of sealed faces that when they open. `widest`: at least open_.
+  /// Computes hydraulic apertures. Sealed faces have their residual aperture. `widest`: at least open_.
   void coefficients(const assembly::State& state, bool widest, std::vector<Real>& values) const override {
     if (!widens_) return;
     const auto widening = base::to_host(state.x[widening_]);

@@ -2,7 +2,7 @@
 
 Rows in plane strain are the growth of half of a fracture at one dimensionless toughness Kd, on a mesh with a number of
 faces along the wing at the end. Strength and residual aperture follow from the opening near the tip, see README.md. The
-last row is a quarter of a circular fracture in 3D, filled with a nearly inviscid fluid. Errors compare with the solution
+last rows are a quarter of a circular fracture in 3D, filled with a nearly inviscid fluid. Errors compare with the solution
 for the same volume at the end. The last line gives the number of failed runs, the largest error of length or radius on
 the finest meshes, the median of the Newton iterations of all steps, and the number of meshes after the first."""
 import math

@@ -150,6 +150,8 @@ class Accuracy(ProgramTest):
             for first, other in zip(whole["steps"], results["steps"]):
                 slips = [step["fractures"]["fault"]["mean_slip"] for step in (first, other)]
                 self.assertAlmostEqual(slips[0] / slips[1], 1, delta=1e-8)
+        self.call("run", self.scene(FAULT), "--output", "parts_1", "--restart", *arguments)  # takes no step
+        self.assertEqual(len(self.results("parts_1")["steps"]), 4)
 
     def test_refines_a_draining_plate_during_the_run(self):
         """The pressure gradient begins at the drained side and moves inwards."""
@@ -215,6 +217,8 @@ class Accuracy(ProgramTest):
                             *(word for entry in (*goal("pressure", well="well", relative=0.01), *in_rock) for word in ("--set", entry)), expect=1)
         self.assertIn(f'{NETWORK}: Sprekk > Flow > Wells > well > "points": in rock, must be on a fracture with "Accuracy"', said)
         self.refuse(['Output > "events": must be absent with "Accuracy"'], FAULT, DURING, "Output.events.rate=1e-3")
+        self.refuse(['stage "later": Sprekk > Accuracy > "refinement": is "during the run", not available with release'], FAULT, DURING,
+                    "Stages.later.time=0.5", "Stages.later.release=0.2")
         _, said = self.call("run", self.scene(CRACK), "--restart", "--output", "out",
                             *(word for entry in good for word in ("--set", entry)), expect=1)
         self.assertIn('--restart: not available with "repeated runs" of the section "Accuracy"', said)

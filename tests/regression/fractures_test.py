@@ -107,7 +107,7 @@ class Fractures(ProgramTest):
             table = [line.replace("friction coefficient", title) for line in lines]
             table[2] = table[2].replace(",0.55,", f",{cell},")
             if title != "friction coefficient":
-                table[3:] = [",".join(line.split(",")[:5]) for line in table[3:]]
+                table[3:] = [",".join(line.split(",")[:5]) + ",," for line in table[3:]]
             (self.folder / "mapped.csv").write_text("\n".join(table) + "\n")
             path = mesh_of(self.folder, scene)
             for ranks in (1, 2):

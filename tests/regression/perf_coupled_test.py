@@ -81,11 +81,10 @@ class Coupled(ProgramTest):
         self.assertLess(fluid, 1e-6)
 
     def test_fluid_is_in_balance_if_round_off_hides_single_rows(self):
-        """Residuals of single rows were within round-off, but their sum was 3e-6 and 1e-4 of the largest flow."""
-        for seed, k, bound in ((90210, 133, 1e-8), (31337, 66, 1e-6)):  # the second: round-off of the pressure at a well
-            lines, (fluid, _) = checks.balances(self.ran(coupled_scenes.draw_scene(seed, k).tree))
-            self.assertEqual(lines, [])
-            self.assertLess(fluid, bound, (seed, k))
+        """Residuals of single rows were within round-off, but their sum was 3e-6 of the largest flow."""
+        lines, (fluid, _) = checks.balances(self.ran(coupled_scenes.draw_scene(90210, 133).tree))
+        self.assertEqual(lines, [])
+        self.assertLess(fluid, 1e-8)
 
     def test_fluid_holds_blocks_between_open_fractures(self):
         """Blocks between fractures opened by fluid: these motions are not free, since the fluid must flow past the blocks.

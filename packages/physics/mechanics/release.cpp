@@ -37,7 +37,7 @@ class Release final : public assembly::Module, public assembly::Loads, public as
   assembly::Declaration declare(const mesh::Mesh& mesh) const override {
     assembly::Declaration d;
     const auto keep = [&](const char* field, fields::Entity entity, int n) {
-      d.history.push_back({std::string("of ") + field, entity, n});
+      d.history.push_back({std::string("of ") + field, entity, n, false, false});
     };
     keep("displacement", fields::Entity::node, mesh.dim());
     if (!mesh.fracture_names.empty()) keep("side bubble", fields::Entity::fracture_face, 2 * mesh.dim());
