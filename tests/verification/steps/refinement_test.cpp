@@ -288,14 +288,16 @@ TEST(Refinement, OfTheInitialStateIsExact) {
   }
 }
 
+/// Linear solves are reproducible, as in runs with checkpoints.
 TEST(Refinement, IsPartOfCheckpoints) {
-  model::Model model(doublet(true), Tpetra::getDefaultComm());
+  const auto scene = [] { return doublet(true, {"Solver.Linear solver.reproducible=true"}); };
+  model::Model model(scene(), Tpetra::getDefaultComm());
   ASSERT_TRUE(model.step_to(1e6).converged);
   refine(model);
   ASSERT_TRUE(model.step_to(2e6).converged);
   refine(model);
   const auto checkpoint = model.save();
-  model::Model other(doublet(true), Tpetra::getDefaultComm());
+  model::Model other(scene(), Tpetra::getDefaultComm());
   other.restore(checkpoint);
   ASSERT_EQ(other.mesh().n_global_cells, model.mesh().n_global_cells);
   for (auto* one : {&model, &other}) ASSERT_TRUE(one->step_to(3e6).converged);
