@@ -1,4 +1,4 @@
-"""Writes the tables in the pages of results from the CSV files beside them, and checks the numbers in their text.
+"""Writes the tables in the pages of results from CSV files in the same folder, and checks the numbers in their text.
 
     ./sprekk perf pages            writes the tables in docs/results/*.md, then checks
     ./sprekk perf pages --check    exit status 1 if a table is out of date or a number has no source

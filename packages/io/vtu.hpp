@@ -78,7 +78,8 @@ class VtuSeries {
   /// Adds a step of blocks, which must have the same names and order on all ranks. Collective.
   void write(Real time, const std::vector<Block>& blocks);
 
-  /// Adds a block of rank 0 to all later steps: DIRECTORY/NAME/BLOCK.vtu, or replaces it. Throws as write(). Collective.
+  /// Adds a block of rank 0 to all later steps, as DIRECTORY/NAME/BLOCK.vtu, or replaces it. Throws as write().
+  /// Collective.
   void keep(const Block& block);
 
   const std::vector<Real>& times() const { return times_; }

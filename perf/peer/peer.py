@@ -167,7 +167,7 @@ def compare_flow(options, count):
                 their.append(run({ours.MEAN: reported["mean"]}))
             coarse, fine = (run.values[ours.MEAN] for run in our[-2:])
             exact = fine + (fine - coarse) / 3
-            what = f"{kind}, {scheme} beside {'rt0' if cell == 'triangle' else 'tpfa'}"
+            what = f"{kind}, {scheme} and {'rt0' if cell == 'triangle' else 'tpfa'}"
             found[what] = (their, our, lambda run, exact=exact: abs(run.values[ours.MEAN] / exact - 1))
             for run in their + our:
                 printed.add([f"{what}, {run.code}", *cells(run), found[what][2](run)])
