@@ -2,7 +2,7 @@
 #pragma once
 
 #include "laws/crack_field.hpp"
-#include "physics/mechanics/crack_fronts.hpp"
+#include "mesh/fronts.hpp"
 
 #include <array>
 
@@ -36,13 +36,22 @@ struct Virtual {
   Real slope;        // derivative of tr H in the direction of the advance
 };
 
+/// Constants of the rock for mesh::find_fronts: shear modulus G, G + lambda, Pa, and a number that differs where
+/// integrals must not cross.
+inline std::array<Real, 3> constants(const laws::Elasticity& rock, Real label) {
+  return {rock.G, rock.G + rock.lambda, label};
+}
+inline laws::Elasticity rock_at(const mesh::FrontPoint& front) {
+  return {front.rock[0], front.rock[1] - front.rock[0]};
+}
+
 struct Advance {
-  FrontPoint::Local local;
+  mesh::FrontPoint::Local local;
   Vector q;   // w times the direction ahead
   Matrix dq;  // [k][j] derivative of q_k along j, 1/m
   Real weight;
 
-  Advance(const FrontPoint& front, const Vector& x) : local(front.at(x)) {
+  Advance(const mesh::FrontPoint& front, const Vector& x) : local(front.at(x)) {
     Vector g;
     weight = front.weight(x, g);
     q = weight * local.ahead;
@@ -51,17 +60,18 @@ struct Advance {
 };
 
 /// Crack fields of unit intensity of all modes, in global components.
-inline std::array<Virtual, 3> virtual_fields(const FrontPoint& front, const FrontPoint::Local& at) {
+inline std::array<Virtual, 3> virtual_fields(const mesh::FrontPoint& front, const mesh::FrontPoint::Local& at) {
   const Matrix axes = {at.ahead, front.normal, at.along};
   std::array<Virtual, 3> all;
-  const auto fields = laws::crack_fields(front.rock, at.x1, at.x2, at.curvature);
+  const auto rock = rock_at(front);
+  const auto fields = laws::crack_fields(rock, at.x1, at.x2, at.curvature);
   for (int m = 0; m < 3; ++m) {
     auto& one = all[m];
     one = {};
     for (int a = 0; a < 3; ++a)
       for (int i = 0; i < 3; ++i)
         for (int b = 0; b < 3; ++b) one.H[i] = one.H[i] + (axes[a][i] * fields[m].H[a][b]) * axes[b];
-    one.stress = stress(front.rock, one.H);
+    one.stress = stress(rock, one.H);
     one.force = transposed_times(axes, fields[m].force);
     one.slope = fields[m].slope;
   }

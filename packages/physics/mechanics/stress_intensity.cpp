@@ -25,6 +25,7 @@ using front::times;
 using front::trace;
 using front::values_of;
 using front::virtual_fields;
+using mesh::FrontPoint;
 using mesh::Shape;
 using mesh::Vector;
 using mesh::operator+, mesh::operator-, mesh::operator*;
@@ -244,7 +245,7 @@ class StressIntensity final : public estimate::TableOfStates {
       const Advance advance(front, point.x);
       if (advance.weight == 0) return;
       const Real volume = reference * point.volume, growth = trace(advance.dq);
-      const Matrix s = front::stress(front.rock, point.H);
+      const Matrix s = front::stress(front::rock_at(front), point.H);
       const Vector along = times(point.H, advance.q), f = body(c, point.x, t);
       const auto modes = virtual_fields(front, advance.local);
       for (int m = 0; m < dim; ++m) {
@@ -298,7 +299,7 @@ class StressIntensity final : public estimate::TableOfStates {
       if (advance.weight == 0 || !(r > 0)) return;
       const Vector axes[] = {front.normal, advance.local.ahead, advance.local.along};
       for (int m = 0; m < dim; ++m)
-        sum[m] += area * advance.weight * mesh::dot(t, axes[m]) * laws::jump_of_slope(front.rock, m, r);
+        sum[m] += area * advance.weight * mesh::dot(t, axes[m]) * laws::jump_of_slope(front::rock_at(front), m, r);
     });
   }
 
@@ -317,7 +318,7 @@ class StressIntensity final : public estimate::TableOfStates {
       for (int k = 0; k < mesh::n_face_nodes(shape); ++k)
         for (int i = 0; i < dim; ++i) xi[i] += N[k] * reference_of(mesh::face_nodes(shape)[face.local_face][k], i);
       const Point point = at(face.cell, xi, u);
-      const Matrix s = front::stress(front.rock, point.H);
+      const Matrix s = front::stress(front::rock_at(front), point.H);
       const Vector along = times(point.H, advance.q);
       const auto modes = virtual_fields(front, advance.local);
       for (int m = 0; m < dim; ++m) {
@@ -375,7 +376,7 @@ class StressIntensity final : public estimate::TableOfStates {
     std::vector<Real> stiffness;
     for (std::size_t p = 0; p < fronts_.size(); ++p) {
       const auto& front = fronts_[p];
-      const auto& [G, lambda] = front.rock;
+      const auto [G, lambda] = front::rock_at(front);
       stiffness.push_back(4 * G * (lambda + G) / (lambda + 2 * G));
       for (int m = 0; m < 3; ++m) {
         const Real whole = m < 2 ? stiffness[p] / 2 : G,
@@ -394,7 +395,8 @@ class StressIntensity final : public estimate::TableOfStates {
     }
     column("G", "N/m", [&](auto p) {
       const auto& k = K[p];
-      return (k[0] * k[0] + k[1] * k[1]) / stiffness[p] + (dim == 3 ? k[2] * k[2] / (2 * fronts_[p].rock.G) : 0);
+      return (k[0] * k[0] + k[1] * k[1]) / stiffness[p] +
+             (dim == 3 ? k[2] * k[2] / (2 * front::rock_at(fronts_[p]).G) : 0);
     });
     column("error", unit, [&](auto p) {
       Real square = 0;
@@ -434,7 +436,10 @@ std::unique_ptr<estimate::TableOfStates> make_stress_intensity(const Setting& se
   fail_if(scene.keeps_stress, "is not available after changes of elastic constants or a backfill");
   const bool regions_differ = std::any_of(scene.regions.begin(), scene.regions.end(),
                                           [](const auto& region) { return !region.second.initial_stress.empty(); });
-  auto fronts = find_fronts(mesh, elasticity(scene, mesh), requested, regions_differ);
+  const auto rock = elasticity(scene, mesh);
+  auto fronts = mesh::find_fronts(mesh, requested, [&, &mesh = mesh](LocalIndex c) {
+    return front::constants(rock.of_cell(mesh, c), regions_differ ? mesh.cell_region[c] : 0);
+  });
   return mesh::for_shape(mesh.shape, [&](auto shape) -> std::unique_ptr<estimate::TableOfStates> {
     return std::make_unique<StressIntensity<shape()>>(setting, system, std::move(fronts));
   });

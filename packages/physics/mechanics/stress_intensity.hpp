@@ -8,7 +8,7 @@
 
 namespace sprekk::physics {
 
-/// Creates the table of stress intensity factors at the front points (FrontPoint) of the fractures with "stress
+/// Creates the table of stress intensity factors at the front points (mesh::FrontPoint) of the fractures with "stress
 /// intensity"; null without such fractures. Columns: tip (node), x, y[, z], K_I, K_II[, K_III], G, those of the second
 /// estimate with `_of_jump`, `error`, and `radius` of the domain.
 ///

@@ -1,4 +1,4 @@
-#include "physics/mechanics/crack_fronts.hpp"
+#include "mesh/fronts.hpp"
 
 #include "base/over_ranks.hpp"
 
@@ -8,17 +8,14 @@
 #include <map>
 #include <utility>
 
-namespace sprekk::physics {
-
-using mesh::Vector;
-using mesh::operator+, mesh::operator-, mesh::operator*;
+namespace sprekk::mesh {
 
 namespace {
 
 constexpr Real plateau = 0.4;  // fraction of the radius with weight 1
 constexpr Real largest_turn = 50 * M_PI / 180;
 
-Vector unit(const Vector& v) { return (1 / mesh::norm(v)) * v; }
+Vector unit(const Vector& v) { return (1 / norm(v)) * v; }
 
 /// Value of f(rho), 1 for rho below `plateau`, 0 from 1 on, and its derivative.
 std::array<Real, 2> fall(Real rho) {
@@ -30,20 +27,20 @@ std::array<Real, 2> fall(Real rho) {
 
 Real distance_to_segment(const Vector& x, const Vector& a, const Vector& b) {
   const Vector d = b - a;
-  const Real t = std::clamp(mesh::dot(x - a, d) / mesh::dot(d, d), 0.0, 1.0);
-  return mesh::norm(x - a - t * d);
+  const Real t = std::clamp(dot(x - a, d) / dot(d, d), 0.0, 1.0);
+  return norm(x - a - t * d);
 }
 
 /// Distance to the edges and the centre of a face.
-Real distance_to(const Vector& x, const mesh::FaceCorners& face) {
-  Real least = mesh::norm(x - mesh::face_centre(face));
+Real distance_to(const Vector& x, const FaceCorners& face) {
+  Real least = norm(x - face_centre(face));
   for (int k = 0; k < face.n; ++k) least = std::min(least, distance_to_segment(x, face.x[k], face.x[(k + 1) % face.n]));
   return least;
 }
 
-mesh::FaceCorners corners_of(const mesh::Mesh& mesh, LocalIndex f) {
-  mesh::FaceCorners corners{{}, mesh::n_face_corners(mesh.shape)};
-  for (int k = 0; k < corners.n; ++k) corners.x[k] = mesh::face_corner(mesh, f, k);
+FaceCorners corners_of(const Mesh& mesh, LocalIndex f) {
+  FaceCorners corners{{}, n_face_corners(mesh.shape)};
+  for (int k = 0; k < corners.n; ++k) corners.x[k] = face_corner(mesh, f, k);
   return corners;
 }
 
@@ -56,9 +53,7 @@ struct Edge {
 
 class Fronts {
  public:
-  Fronts(const mesh::Mesh& mesh, const fields::Properties<laws::Elasticity>& elasticity,
-         const std::vector<char>& requested, bool regions_differ)
-      : mesh_(mesh), elasticity_(elasticity), regions_differ_(regions_differ) {
+  Fronts(const Mesh& mesh, const std::vector<char>& requested, const RockConstants& rock) : mesh_(mesh), rock_(rock) {
     gather_points(requested);
     if (mesh.dim() == 3) gather_edges(requested);
     for (auto& point : points_) set_frame(point);
@@ -74,10 +69,10 @@ class Fronts {
   std::vector<FrontPoint> take() { return std::move(points_); }
 
  private:
-  bool is_tip(const mesh::Mesh::FractureFace& face, int k) const {
+  bool is_tip(const Mesh::FractureFace& face, int k) const {
     return face.nodes[0][k] >= 0 && face.nodes[0][k] == face.nodes[1][k];
   }
-  GlobalIndex id(const mesh::Mesh::FractureFace& face, int k) const { return mesh_.node_id[face.nodes[0][k]]; }
+  GlobalIndex id(const Mesh::FractureFace& face, int k) const { return mesh_.node_id[face.nodes[0][k]]; }
 
   /// Gathers the nodes, with sums of normals and of vectors to the centres of faces in `normal` and `ahead`.
   void gather_points(const std::vector<char>& requested) {
@@ -86,16 +81,15 @@ class Fronts {
       const auto& face = mesh_.fracture_faces[f];
       if (!requested[face.fracture]) continue;
       const auto corners = corners_of(mesh_, f);
-      const auto cell = face.cell[mesh::minus];
-      const auto& rock = elasticity_.of_cell(mesh_, cell);
+      const auto rock = rock_(face.cell[minus]);
       for (int k = 0; k < corners.n; ++k) {
         if (!is_tip(face, k)) continue;
         const Vector& x = corners.x[k];
         Real size = 0;
-        for (int l = 0; l < corners.n; ++l) size = std::max(size, mesh::norm(corners.x[l] - x));
-        const Vector n = face.area * face.frame[0], behind = mesh::face_centre(corners) - x;
+        for (int l = 0; l < corners.n; ++l) size = std::max(size, norm(corners.x[l] - x));
+        const Vector n = face.area * face.frame[0], behind = face_centre(corners) - x;
         here.insert(here.end(), {Real(id(face, k)), Real(face.single), x[0], x[1], x[2], n[0], n[1], n[2], behind[0],
-                                 behind[1], behind[2], size, rock.G, rock.lambda, Real(mesh_.cell_region[cell])});
+                                 behind[1], behind[2], size, rock[0], rock[1], rock[2]});
       }
     }
     const auto all = base::gather_over_ranks(*mesh_.comm, here);
@@ -110,8 +104,7 @@ class Fronts {
         point.single = static_cast<int>(v[1]);
         point.x = {v[2], v[3], v[4]};
         point.size = 0;
-        point.rock = {v[12], v[13]};
-        point.region = static_cast<int>(v[14]);
+        point.rock = {v[12], v[13], v[14]};
         point.normal = point.ahead = {};
       }
       point.normal = point.normal + Vector{v[5], v[6], v[7]};
@@ -164,18 +157,18 @@ class Fronts {
       if (ends.empty()) return void(point.radius = -1);
       along = ends.back() - (ends.size() > 1 && opposite(ends) ? ends.front() : Vector{});
       if (ends.size() > 1) to_centre = centre_of_circle(ends[0], ends[1]);
-      if (const Real r = mesh::norm(to_centre); r > 0) {
-        along = along - (mesh::dot(along, to_centre) / (r * r)) * to_centre;
+      if (const Real r = norm(to_centre); r > 0) {
+        along = along - (dot(along, to_centre) / (r * r)) * to_centre;
         point.curvature = 1 / r;
       }
-      along = unit(along - mesh::dot(along, point.normal) * point.normal);
-      point.ahead = mesh::cross(along, point.normal);
+      along = unit(along - dot(along, point.normal) * point.normal);
+      point.ahead = cross(along, point.normal);
     }
-    point.ahead = point.ahead - mesh::dot(point.ahead, point.normal) * point.normal;
-    if (mesh::dot(point.ahead, outward) < 0) point.ahead = Real(-1) * point.ahead;
+    point.ahead = point.ahead - dot(point.ahead, point.normal) * point.normal;
+    if (dot(point.ahead, outward) < 0) point.ahead = Real(-1) * point.ahead;
     point.ahead = unit(point.ahead);
-    point.along = mesh::cross(point.ahead, point.normal);
-    if (mesh::dot(to_centre, point.ahead) > 0) point.curvature = -point.curvature;
+    point.along = cross(point.ahead, point.normal);
+    if (dot(to_centre, point.ahead) > 0) point.curvature = -point.curvature;
   }
 
   /// Vectors to the two neighbours on the front, or from its end to the next two nodes. Empty at corners, one vector
@@ -191,19 +184,19 @@ class Fronts {
     if (ends.size() > 2) return {};
     const Vector& a = ends.front();
     const Vector b = ends.size() == 1 ? a : found->second.size() == 2 ? ends[1] : ends[1] - a;
-    const Real cosine = mesh::dot(a, b) / (mesh::norm(a) * mesh::norm(b)) * (found->second.size() == 2 ? -1 : 1);
+    const Real cosine = dot(a, b) / (norm(a) * norm(b)) * (found->second.size() == 2 ? -1 : 1);
     if (cosine < std::cos(largest_turn)) return {};
     if (found->second.size() == 1 && ends.size() == 2) std::swap(ends[0], ends[1]);  // the tangent is that to the next
     return ends;
   }
-  static bool opposite(const std::vector<Vector>& ends) { return mesh::dot(ends[0], ends[1]) < 0; }
+  static bool opposite(const std::vector<Vector>& ends) { return dot(ends[0], ends[1]) < 0; }
 
   /// Vector from the origin to the centre of the circle through the origin, p and q; zero if they are collinear.
   static Vector centre_of_circle(const Vector& p, const Vector& q) {
-    const Vector n = mesh::cross(p, q);
-    const Real pp = mesh::dot(p, p), qq = mesh::dot(q, q), nn = mesh::dot(n, n);
+    const Vector n = cross(p, q);
+    const Real pp = dot(p, p), qq = dot(q, q), nn = dot(n, n);
     if (nn < 1e-12 * pp * qq) return {};
-    return (1 / (2 * nn)) * mesh::cross(pp * q - qq * p, n);
+    return (1 / (2 * nn)) * cross(pp * q - qq * p, n);
   }
 
   /// Reduces the distance of obstacles of each valid point, then sets the radii.
@@ -230,8 +223,8 @@ class Fronts {
     Real least = std::numeric_limits<Real>::max();
     for (const auto& face : mesh_.boundary_faces) {
       if (!face.owned) continue;
-      const auto corners = mesh::face_corners(mesh_, face.cell, face.local_face);
-      const bool is_end = mesh_.dim() == 3 && std::abs(mesh::dot(unit(mesh::area_vector(corners)), point.along)) > 0.98;
+      const auto corners = face_corners(mesh_, face.cell, face.local_face);
+      const bool is_end = mesh_.dim() == 3 && std::abs(dot(unit(area_vector(corners)), point.along)) > 0.98;
       if (!is_end) least = std::min(least, distance_to(point.x, corners));
     }
     return least;
@@ -243,11 +236,11 @@ class Fronts {
       bool follows = mesh_.fracture_faces[f].single == point.single;
       for (int k = 0; k < corners.n && follows; ++k) {
         const Vector d = corners.x[k] - point.x;
-        follows = std::abs(mesh::dot(d, point.normal)) <= 0.02 * mesh::norm(d);
+        follows = std::abs(dot(d, point.normal)) <= 0.02 * norm(d);
       }
       if (follows) {
-        const Vector d = mesh::face_centre(corners) - point.x;
-        follows = point.at(mesh::face_centre(corners)).x1 < 0.05 * mesh::norm(d);
+        const Vector d = face_centre(corners) - point.x;
+        follows = point.at(face_centre(corners)).x1 < 0.05 * norm(d);
       }
       if (!follows) least = std::min(least, distance_to(point.x, corners));
     }
@@ -257,11 +250,9 @@ class Fronts {
     Real least = std::numeric_limits<Real>::max();
     const int n = mesh_.nodes_per_cell(), dim = mesh_.dim();
     for (LocalIndex c = 0; c < mesh_.n_owned_cells; ++c) {
-      const auto& rock = elasticity_.of_cell(mesh_, c);
+      const auto rock = rock_(c);
       const auto differs = [](Real a, Real b) { return std::abs(a - b) > 1e-9 * (std::abs(a) + std::abs(b)); };
-      if ((!regions_differ_ || mesh_.cell_region[c] == point.region) && !differs(rock.G, point.rock.G) &&
-          !differs(rock.G + rock.lambda, point.rock.G + point.rock.lambda))
-        continue;
+      if (std::equal(rock.begin(), rock.end(), point.rock.begin(), std::not_fn(differs))) continue;
       for (int a = 0; a < n; ++a) {
         Real square = 0;
         for (int i = 0; i < dim; ++i) {
@@ -276,7 +267,7 @@ class Fronts {
   Real to_fronts(const FrontPoint& point) const {
     Real least = std::numeric_limits<Real>::max();
     for (const auto& other : points_) {
-      const Real d = mesh::norm(other.x - point.x);
+      const Real d = norm(other.x - point.x);
       if (d == 0 || d >= least) continue;
       const auto local = point.at(other.x);
       const bool same = mesh_.dim() == 3 && other.single == point.single && std::hypot(local.x1, local.x2) <= 0.1 * d;
@@ -293,13 +284,12 @@ class Fronts {
     Vector gradient;
     for (const auto& [a, b] : point.edges) {
       const Vector d = b - a;
-      for (int g = 0; g < 4; ++g) sum += weight[g] * mesh::norm(d) * point.weight(a + place[g] * d, gradient);
+      for (int g = 0; g < 4; ++g) sum += weight[g] * norm(d) * point.weight(a + place[g] * d, gradient);
     }
     return sum;
   }
-  const mesh::Mesh& mesh_;
-  const fields::Properties<laws::Elasticity>& elasticity_;
-  bool regions_differ_;
+  const Mesh& mesh_;
+  const RockConstants& rock_;
   std::vector<FrontPoint> points_;
   std::vector<Edge> edges_;
   std::map<GlobalIndex, std::vector<std::pair<GlobalIndex, Vector>>> next_;  // neighbours on fronts
@@ -309,16 +299,16 @@ class Fronts {
 
 FrontPoint::Local FrontPoint::at(const Vector& point) const {
   const Vector d = point - x;
-  if (curvature == 0) return {mesh::dot(d, ahead), mesh::dot(d, normal), 0, ahead, along};
-  const Real r = 1 / curvature, a = mesh::dot(d, ahead) + r, b = mesh::dot(d, along);
+  if (curvature == 0) return {dot(d, ahead), dot(d, normal), 0, ahead, along};
+  const Real r = 1 / curvature, a = dot(d, ahead) + r, b = dot(d, along);
   const Real sign = curvature > 0 ? 1 : -1, rho = sign * std::hypot(a, b);  // rho has the sign of r
   const Vector out = (a / rho) * ahead + (b / rho) * along;
-  return {rho - r, mesh::dot(d, normal), 1 / rho, out, mesh::cross(out, normal)};
+  return {rho - r, dot(d, normal), 1 / rho, out, cross(out, normal)};
 }
 
 Real FrontPoint::weight(const Vector& point, Vector& gradient) const {
   const Vector d = point - x;
-  const Real r = mesh::norm(d);
+  const Real r = norm(d);
   const auto [value, slope] = fall(r / radius);
   gradient = r > 0 ? (slope / (radius * r)) * d : Vector{};
   return value;
@@ -331,9 +321,8 @@ Real FrontPoint::distance(const Vector& point) const {
   return least;
 }
 
-std::vector<FrontPoint> find_fronts(const mesh::Mesh& mesh, const fields::Properties<laws::Elasticity>& elasticity,
-                                    const std::vector<char>& requested, bool regions_differ) {
-  return Fronts(mesh, elasticity, requested, regions_differ).take();
+std::vector<FrontPoint> find_fronts(const Mesh& mesh, const std::vector<char>& requested, const RockConstants& rock) {
+  return Fronts(mesh, requested, rock).take();
 }
 
-}  // namespace sprekk::physics
+}  // namespace sprekk::mesh
