@@ -169,6 +169,40 @@ TEST(Newton, ReturnsToTheIterateBeforeAdditionalIterations) {
   EXPECT_NEAR(x[0]->getData()[0], -1, 1e-12);
 }
 
+/// x^2 = 1 on each rank, on request as a balance.
+class Parabola : public ScalarProblem {
+ public:
+  Parabola(const RCP<const Comm>& comm, bool balance)
+      : ScalarProblem(
+            comm, comm->getSize(), [](Real x, Real, Real) { return x * x - 1; },
+            [](Real x, Real, Real) { return 2 * x; }),
+        blocks_(ScalarProblem::blocks()) {
+    blocks_.front().balance = balance;
+  }
+  const std::vector<Block>& blocks() const override { return blocks_; }
+  std::vector<Measure> measures(const Evaluation&, const BlockVector& r) override { return {{"x", r[0]->normInf()}}; }
+
+ private:
+  std::vector<Block> blocks_;
+};
+
+/// The measures are 2e-3 at the start and 1e-6 after an iteration. Balances always meet the tolerance.
+TEST(Newton, SolvesFromExtrapolatedStatesToTheAccuracyOfTheStep) {
+  const auto iterations = [](bool balance, Real accuracy) {
+    Parabola problem(Tpetra::getDefaultComm(), balance);
+    Newton newton(problem, {});
+    Evaluation x(problem.constant(1.001));
+    problem.set_time(1, 1);
+    const auto report = newton.solve(x, accuracy);
+    EXPECT_TRUE(report.converged) << report.reason;
+    return report.iterations;
+  };
+  EXPECT_EQ(iterations(false, 0), 2);
+  EXPECT_EQ(iterations(false, 1e-3), 1);
+  EXPECT_EQ(iterations(false, 1e-5), 2);  // a hundredth of this is 1e-7
+  EXPECT_EQ(iterations(true, 1e-3), iterations(true, 0));
+}
+
 TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
   GridProblem problem(Tpetra::getDefaultComm(), {2, 6, 6, false, true, -1});
   Newton newton(problem, {});
