@@ -169,13 +169,13 @@ TEST(Newton, ReturnsToTheIterateBeforeAdditionalIterations) {
   EXPECT_NEAR(x[0]->getData()[0], -1, 1e-12);
 }
 
-/// x^2 = 1 on each rank, on request as a balance.
-class Parabola : public ScalarProblem {
+/// x |x| = 1 and -1 on each rank, on request as balances. Residuals of opposite states are opposite.
+class Parabolas : public ScalarProblem {
  public:
-  Parabola(const RCP<const Comm>& comm, bool balance)
+  Parabolas(const RCP<const Comm>& comm, bool balance)
       : ScalarProblem(
-            comm, comm->getSize(), [](Real x, Real, Real) { return x * x - 1; },
-            [](Real x, Real, Real) { return 2 * x; }),
+            comm, 2 * comm->getSize(), [](Real x, Real, Real) { return x > 0 ? x * x - 1 : 1 - x * x; },
+            [](Real x, Real, Real) { return 2 * std::abs(x); }),
         blocks_(ScalarProblem::blocks()) {
     blocks_.front().balance = balance;
   }
@@ -189,9 +189,11 @@ class Parabola : public ScalarProblem {
 /// The measures are 2e-3 at the start and 1e-6 after an iteration. Balances always meet the tolerance.
 TEST(Newton, SolvesFromExtrapolatedStatesToTheAccuracyOfTheStep) {
   const auto iterations = [](bool balance, Real accuracy) {
-    Parabola problem(Tpetra::getDefaultComm(), balance);
+    Parabolas problem(Tpetra::getDefaultComm(), balance);
     Newton newton(problem, {});
-    Evaluation x(problem.constant(1.001));
+    auto start = problem.constant(1.001);
+    start[0]->replaceLocalValue(1, -1.001);
+    Evaluation x(start);
     problem.set_time(1, 1);
     const auto report = newton.solve(x, accuracy);
     EXPECT_TRUE(report.converged) << report.reason;
