@@ -157,7 +157,8 @@ void JointMaterial::describe(base::Section& s, bool of_all_kinds) {
            "state of the joint with the initial aperture; unloaded: without load and slip; in situ: with the initial "
            "stress, pressure and slip; in situ hydraulic: likewise, and the value is the hydraulic aperture");
   s.entry(strength_reduction, "strength reduction factor", "-", base::positive(),
-          "reduction factor F: friction and bond of the joint have 1/F of their strength");
+          "reduction factor F: friction and bond of the joint have 1/F of their strength; radiation damping is not "
+          "reduced");
   for (const auto& [name, value] : {std::pair("initial gap", &initial_gap), {"initial aperture", &initial_aperture}})
     if (!value->constant_in_time())
       s.fail(name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));

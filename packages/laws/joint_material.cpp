@@ -98,6 +98,18 @@ bool JointMaterial::depends_on_rate() const {
   return law.depends_on_rate();
 }
 
+namespace {
+
+/// Multiplies the radiation damping by a factor, if there is any.
+Friction with_damping(const Friction& friction, Real factor) {
+  return friction.visit([&](auto law) {
+    if constexpr (requires { law.damping; }) law.damping *= factor;
+    return Friction(law);
+  });
+}
+
+}  // namespace
+
 JointParameters JointMaterial::joint(const Point& x) const {
   check(x);
   for (const auto& [entry, what] : missing())
@@ -112,7 +124,8 @@ JointParameters JointMaterial::joint(const Point& x) const {
   set_part(joint.law.driver, DriverKinds(), damage_driver, *this, x);
   joint.law.gap.initial = initial_gap(x, 0);
   joint.law.strength = 1 / strength_reduction;
-  const Real zero = 0;  // all history variables
+  joint.law.friction = with_damping(joint.law.friction, strength_reduction);  // a resistance of the rock, not reduced
+  const Real zero = 0;                                                        // all history variables
   Contact<Real> at_rest;
   at_rest.history = {&zero, 0};
   const Real dilates = dilation_slope(joint.law, at_rest);

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int max_runs = 60;
+constexpr int max_meshes = 60;       // of a run, or of the attempts of a step
 constexpr Real marked_share = 0.5;   ///< share of the indicator sum in the marked cells
 constexpr Real share_of_time = 0.3;  ///< of the tolerance
 constexpr int max_halvings = 6;      ///< of time steps
@@ -135,7 +135,9 @@ std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const 
     return fmt::format("the next run would end after {:.3g} s (\"seconds\")", *accuracy.seconds);
   if (accuracy.memory && grows * bytes > *accuracy.memory)
     return fmt::format("the next run would need more than {:.3g} bytes (\"memory\")", *accuracy.memory);
-  if (runs_.size() >= max_runs) return fmt::format("{} meshes were not enough", max_runs);
+  const auto n_meshes =
+      std::count_if(runs_.begin(), runs_.end(), [&](const auto& one) { return one.begin == run.begin; });
+  if (n_meshes >= max_meshes) return fmt::format("{} meshes were not enough", max_meshes);
   return "";
 }
 

@@ -15,8 +15,8 @@ from perf.earthquakes import fluid_driven, rate_state, rupture, sequence
 BOUNDS = {"failures": 0, "worst_error": 0.03, "newton_median": 4, "steps_ratio": 2}
 QUICK_BOUNDS = {**BOUNDS, "steps_ratio": 20}  # a guard: spring sliders miss the target
 FORMATS = {"worst_error": ".4f", "newton_median": ".3g", "steps_ratio": ".2f"}
-COLUMNS = {"row": "", "faces": "d", "front": ".2%", "slip": ".2%", "first event": ".2%", "period": ".2%", "error": ".2%", "steps": "d", "rejected": "d", "Newton": ".3g",
-           "most": "d", "Krylov": ".1f", "set-ups": ".2f", "cost": ".1f", "reference": "d", "ratio": ".2f", "seconds": ".1f"}
+COLUMNS = {"row": "", "faces": "d", "front": ".2%", "slip": ".2%", "first event": ".2%", "onset": ".2%", "period": ".2%", "error": ".2%", "steps": "d", "rejected": "d", "Newton": ".3g",
+           "most": "d", "Krylov": ".1f", "set-ups": ".2f", "cost": ".1f", "reference": "d", "ratio": ".2f", "seconds": ".1f", "onsets": ""}
 
 
 @dataclass
@@ -33,15 +33,16 @@ class Row:
     reference: int = None
     setups: float = None    # factorisations or hierarchies per step
     cost: float = None      # of a step, over that of a linear solve and a residual
+    onsets: str = None      # years, with errors
 
     @classmethod
-    def of_run(cls, name, run, errors, reference=None):
+    def of_run(cls, name, run, errors, reference=None, onsets=None):
         steps = run.steps
         timing = run.results["timing"]
         unit = sum(timing[phase]["cpu_seconds"] / timing[phase]["count"] for phase in ("linear_solve", "residual"))
         return cls(name, errors, len(steps), sum(step.get("rejected", 0) for step in steps), run.seconds, run.results["mesh"]["fracture_faces"],
                    run.newton, sum(step["linear_iterations"] for step in steps) / len(steps), reference,
-                   timing["set-up_of_linear_solver"]["count"] / len(steps), timing["time_steps"]["cpu_seconds"] / len(steps) / unit)
+                   timing["set-up_of_linear_solver"]["count"] / len(steps), timing["time_steps"]["cpu_seconds"] / len(steps) / unit, onsets)
 
     @property
     def error(self):
@@ -53,9 +54,9 @@ class Row:
 
     def values(self):
         median, most = (float(np.median(self.newton)), max(self.newton)) if self.newton else (None, None)
-        errors = [self.errors.get(column) for column in ("front", "slip", "first event", "period")]
+        errors = [self.errors.get(column) for column in ("front", "slip", "first event", "onset", "period")]
         return [self.name, self.faces, *errors, self.error, self.steps, self.rejected, median, most, self.krylov, self.setups, self.cost,
-                self.reference, self.ratio, self.seconds]
+                self.reference, self.ratio, self.seconds, self.onsets]
 
 
 def cases(options):

@@ -41,6 +41,20 @@ TEST(RateStatePoint, VelocityStepsAreExactAwayFromThem) {
   EXPECT_GT(compared, 10);
 }
 
+/// A strength reduction factor of 2 halves the friction of steady slip, but not the radiation damping.
+TEST(RateStatePoint, StrengthReductionDoesNotReduceRadiationDamping) {
+  constexpr Real strong = 1e13;
+  const auto states = drive("rate_state.xml", {"Materials.joint.strength reduction factor=2",
+                                               entry("Materials.joint.radiation damping", strong)});
+  int compared = 0;
+  for (const auto& state : states) {
+    if (state.t <= 0 || state.t > 20) continue;
+    EXPECT_NEAR(state.traction[1] / N, 0.3 + strong * 1e-6 / N, 1e-9) << state.t;
+    ++compared;
+  }
+  EXPECT_GT(compared, 3);
+}
+
 /// Gouge opens by o = h eps ln(10) (1 - exp(-s/L)) after the slip s at ten times the rate, and closes again at the old
 /// rate. Pressed by a stiff column, the compression increases by the stiffness times o.
 TEST(RateStatePoint, GougeDilatesByTheSlipRate) {
