@@ -27,11 +27,11 @@ constexpr int max_lagged = 60;  // steps with lagged coefficients
 constexpr int max_additional = 2;
 
 /// Convergence test. Converged: all measures are at most the tolerance. If round-off hides an error of the sums of
-/// balances, up to two iterations follow while they halve it. Failed: a measure or the residual is not finite, no
+/// balances, up to two full steps follow while they halve it. Failed: a measure or the residual is not finite, no
 /// progress, too many iterations, or stopped. Saves the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
-  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, const NewtonStep::Report& step,
+  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, NewtonStep& step,
               NewtonReport& report)
       : problem_(problem), options_(options), picard_(picard), step_(step), report_(report), balances_(problem) {}
 
@@ -53,13 +53,15 @@ class MeasureTest : public NOX::StatusTest::Generic {
       fail("the residual is not finite");
     } else if (within_tolerance) {
       if (!needs_another_iteration(group)) status_ = NOX::StatusTest::Converged;
+    } else if (!accepted_.empty()) {
+      fail("an additional iteration has larger errors");
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
     } else if ((picard_.lags() && picard_.n_steps() >= max_lagged) ||
                report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
-    } else if (step_.stagnant) {
+    } else if (step_.report().stagnant) {
       fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
     } else if (base::any_rank(*problem_.comm(), options_.should_stop)) {
@@ -93,6 +95,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
     if (is_best) save(group.x().x());
     least_imbalance_ = std::min(least_imbalance_, imbalance);
     ++n_additional_;
+    step_.end_search();
     return true;
   }
   void save(const BlockVector& x) {
@@ -108,7 +111,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
   BlockProblem& problem_;
   const NewtonOptions& options_;
   const Picard& picard_;
-  const NewtonStep::Report& step_;
+  NewtonStep& step_;
   NewtonReport& report_;
   BalanceCheck balances_;
   int n_additional_ = 0;  // iterations after the measures have converged
@@ -270,7 +273,7 @@ NewtonReport Newton::solve(Evaluation& x) {
   std::optional<Picard> picard(std::in_place, problem_, x);
   const auto step = rcp(new NewtonStep(problem_, *forced_, *picard));
   const auto& found = step->report();
-  const auto test = rcp(new MeasureTest(problem_, options_, *picard, found, report));
+  const auto test = rcp(new MeasureTest(problem_, options_, *picard, *step, report));
   const auto parameters = nox_parameters(options_, step, problem_.comm()->getRank());
   RCP<NOX::Solver::Generic> solver;
   try {
