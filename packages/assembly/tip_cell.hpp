@@ -153,7 +153,7 @@ class TipCell {
     return {X_, dN};
   }
 
-  static constexpr int n_points = is_simplex(shape) ? 5 : dim == 2 ? 8 : 4;
+  static constexpr int n_points = is_simplex(shape) ? 5 : dim == 2 ? 8 : 6;
   static constexpr int n_face_points = 10;  // fewer points than in a cell; their accuracy determines equilibrium
 
   const TipRules::Rule& face_rule(const std::vector<char>& tips) const {

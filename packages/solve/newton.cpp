@@ -28,13 +28,13 @@ constexpr int max_additional = 2;
 constexpr Real small_part = 1e-2;  // of the change of extrapolated states and of the accuracy of steps
 
 /// Convergence test. Converged: all measures are at most the tolerance, or small compared with the accuracy of the time
-/// step. If round-off hides an error of the sums of
-/// balances, up to two iterations follow while they halve it. Failed: a measure or the residual is not finite, no
-/// progress, too many iterations, or stopped. Saves the history and the reason.
+/// step. If round-off hides an error of the sums of balances, up to two full steps follow while they halve it. Failed:
+/// a measure or the residual is not finite, no progress, too many iterations, or stopped. Saves the history and the
+/// reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
   MeasureTest(BlockProblem& problem, const NewtonOptions& options, Real accuracy, const Picard& picard,
-              const NewtonStep::Report& step, NewtonReport& report)
+              NewtonStep& step, NewtonReport& report)
       : problem_(problem),
         options_(options),
         accuracy_(accuracy),
@@ -61,13 +61,15 @@ class MeasureTest : public NOX::StatusTest::Generic {
       fail("the residual is not finite");
     } else if (within_tolerance) {
       if (!needs_another_iteration(group)) status_ = NOX::StatusTest::Converged;
+    } else if (!accepted_.empty()) {
+      fail("an additional iteration has larger errors");
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
     } else if ((picard_.lags() && picard_.n_steps() >= max_lagged) ||
                report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("no convergence in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
-    } else if (step_.stagnant) {
+    } else if (step_.report().stagnant) {
       fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
     } else if (base::any_rank(*problem_.comm(), options_.should_stop)) {
@@ -115,6 +117,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
     if (is_best) save(group.x().x());
     least_imbalance_ = std::min(least_imbalance_, imbalance);
     ++n_additional_;
+    step_.end_search();
     return true;
   }
   void save(const BlockVector& x) {
@@ -131,7 +134,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
   const NewtonOptions& options_;
   Real accuracy_;
   const Picard& picard_;
-  const NewtonStep::Report& step_;
+  NewtonStep& step_;
   NewtonReport& report_;
   BalanceCheck balances_;
   int n_additional_ = 0;  // iterations after the measures have converged
@@ -293,7 +296,7 @@ NewtonReport Newton::solve(Evaluation& x, Real accuracy) {
   std::optional<Picard> picard(std::in_place, problem_, x);
   const auto step = rcp(new NewtonStep(problem_, *forced_, *picard));
   const auto& found = step->report();
-  const auto test = rcp(new MeasureTest(problem_, options_, accuracy, *picard, found, report));
+  const auto test = rcp(new MeasureTest(problem_, options_, accuracy, *picard, *step, report));
   const auto parameters = nox_parameters(options_, step, problem_.comm()->getRank());
   RCP<NOX::Solver::Generic> solver;
   try {

@@ -137,7 +137,7 @@ NewtonStep::Found NewtonStep::enter_other_states(Attempt& attempt) {
 /// Lets Picard check a step, and returns whether the step is rejected. If f has changed, evaluates f and the merit
 /// again.
 bool NewtonStep::reject(const Attempt& attempt, Trial& taken) {
-  if (!picard_.possible()) return false;
+  if (!picard_.possible() || !is_searching_) return false;
   const bool lagged = picard_.lags();
   bool back = false;
   if (lagged) {

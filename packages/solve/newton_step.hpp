@@ -61,6 +61,9 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
                const NOX::Solver::Generic& solver) override;
   bool reset(const RCP<NOX::GlobalData>&, Teuchos::ParameterList&) override { return true; }
 
+  /// Makes all further steps full: all rows have converged, and merits are round-off.
+  void end_search() { is_searching_ = false; }
+
   const Report& report() const { return report_; }
   const Iterates& iterates() const { return iterates_; }
 
@@ -101,7 +104,7 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   Real merit(NoxGroup& group) const;
   Real merit_of_changed_f(NoxGroup& group) const;
   Real error_of(const NoxGroup& group, ForcedSolve::Part part) const;
-  bool searches() const { return !picard_.lags() || (struggles_ && !picard_.fresh()); }
+  bool searches() const { return is_searching_ && (!picard_.lags() || (struggles_ && !picard_.fresh())); }
   bool begins_to_struggle(const Trial& taken);
   bool freeze(const Trial& taken);
   bool is_stagnant() const;
@@ -121,6 +124,7 @@ class NewtonStep : public NOX::Direction::Generic, public NOX::LineSearch::Gener
   bool only_balances_ = true;  // no rock or joint that deforms
   int n_flow_steps_ = 0;       // successive directions of this kind
   bool carried_ = false;       // advected blocks have followed the last step by a solve of their own
+  bool is_searching_ = true;   // see end_search()
   bool struggles_ = false;     // a full step with lagged coefficients increased the merit
 };
 

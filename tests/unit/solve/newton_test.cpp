@@ -163,7 +163,7 @@ TEST(Newton, ReturnsToTheIterateBeforeAdditionalIterations) {
   problem.set_time(1, 1);
   const auto report = newton.solve(x);
   EXPECT_TRUE(report.converged) << report.reason;
-  EXPECT_GT(report.iterations, 1);
+  EXPECT_EQ(report.iterations, 2);
   ASSERT_EQ(report.measures.size(), 1u);
   EXPECT_EQ(report.measures[0].value, OpenBalance::accepted);
   EXPECT_NEAR(x[0]->getData()[0], -1, 1e-12);
@@ -203,6 +203,65 @@ TEST(Newton, SolvesFromExtrapolatedStatesToTheAccuracyOfTheStep) {
   EXPECT_EQ(iterations(false, 1e-3), 1);
   EXPECT_EQ(iterations(false, 1e-5), 2);  // a hundredth of this is 1e-7
   EXPECT_EQ(iterations(true, 1e-3), iterations(true, 0));
+}
+
+/// x decreases by f(x), which is given for the successive iterates x_0 = 0, x_1, ... The measures of x_0 alone have not
+/// converged. f is the error of the sum of a balance, relative to f(0) = 1. Merits of converged iterates are round-off.
+class GivenImbalances : public ScalarProblem {
+ public:
+  GivenImbalances(const RCP<const Comm>& comm, const std::vector<Real>& given)
+      : ScalarProblem(
+            comm, comm->getSize(), [this](Real x, Real, Real) { return f_[index_of(x)]; },
+            [](Real, Real, Real) { return 1.0; }),
+        f_(given),
+        blocks_(ScalarProblem::blocks()) {
+    for (const Real f : f_) x_.push_back(x_.back() - f);
+    blocks_.front().balance = true;
+  }
+  Real iterate(int k) const { return x_[k]; }
+  const std::vector<Block>& blocks() const override { return blocks_; }
+  std::vector<Measure> measures(const Evaluation& at, const BlockVector&) override {
+    const std::size_t k = index_of(at.x()[0]->getData()[0]);
+    return {{"x", k == 0 ? 1 : 1e-13 * k}};
+  }
+  Real merit(const Evaluation& at, const BlockVector&) override {
+    const std::size_t k = index_of(at.x()[0]->getData()[0]);
+    return k == 0 ? 1 : 1e-30 * k;
+  }
+
+ private:
+  std::size_t index_of(Real x) const {
+    std::size_t k = 0;
+    while (k + 1 < f_.size() && x < (x_[k] + x_[k + 1]) / 2) ++k;
+    return k;
+  }
+  std::vector<Real> f_, x_ = {0};
+  std::vector<Block> blocks_;
+};
+
+/// Of the iterates with converged measures, the solve returns the one with the smallest error of the sum.
+TEST(Newton, ReturnsTheIterateWithTheSmallestImbalance) {
+  struct Case {
+    std::vector<Real> imbalances;
+    int iterations, returned;
+  };
+  for (const auto& [imbalances, iterations, returned] :
+       {Case{{1, 1e-8}, 1, 1},                    // the sum closes
+        Case{{1, 1e-3, 1e-8}, 2, 2},              // after an additional iteration
+        Case{{1, 1e-3, 1e-4, 1e-5, 1e-9}, 3, 3},  // two additional iterations at most
+        Case{{1, 1e-3, 9e-4, 1e-8}, 2, 2},        // the last one must halve the error
+        Case{{1, 1e-3, 2e-3, 1e-8}, 2, 1},        // larger error
+        Case{{1, 1e-3, 1e-4, 5e-4, 1e-8}, 3, 2}}) {
+    GivenImbalances problem(Tpetra::getDefaultComm(), imbalances);
+    Newton newton(problem, {});
+    auto x = problem.constant(0);
+    problem.set_time(1, 1);
+    const auto report = newton.solve(x);
+    ASSERT_TRUE(report.converged) << report.reason;
+    EXPECT_EQ(report.iterations, iterations);
+    EXPECT_NEAR(x[0]->getData()[0], problem.iterate(returned), 1e-12);
+    EXPECT_EQ(report.measures[0].value, 1e-13 * returned);
+  }
 }
 
 TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
