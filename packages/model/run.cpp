@@ -369,7 +369,13 @@ std::size_t check(const RunOptions& options, RCP<const Comm> comm) {
 std::string mesh_info(const std::string& path, const std::vector<std::string>& fractures) {
   mesh::MshOptions options;
   for (const auto& name : fractures) options.fractures[std::string(base::trimmed(name))];
-  return mesh::to_text(mesh::describe(mesh::read_msh(path, options)));
+  try {
+    return mesh::to_text(mesh::describe(mesh::read_msh(path, options)));
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.find("among the fractures") == std::string::npos) throw;
+    throw Error(message + "; this command lists fractures by --fractures a,b");
+  }
 }
 
 std::string reference() {
