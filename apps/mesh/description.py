@@ -18,7 +18,7 @@ from parts import joined_parts, separate_parts
 from shapes import MAXIMUM, Errors, Feature, NetworkError, Plane, at, diameter, ellipse, refuse
 from surface_files import read_dfnworks, read_gocad
 from surfaces import Surface, angle_of_planes, trimmed
-from tables import Table, complete, has_ellipses, has_points, read_table
+from tables import Table, complete, has_ellipses, has_points, is_number, read_table
 
 MAX_FRACTURES = 10**5
 TRIMMED, TRIMMED_ANGLE, MIN_PART = 2.0, 10.0, 0.4  # distance in tolerances, degrees, share of the area: parts cut off
@@ -183,12 +183,28 @@ class Network:
                 return {"lower corner": list(table.box[0]), "upper corner": list(table.box[1]), "corners": [], "faces": {}}
         raise NetworkError(f"{self.place('domain')}: missing; give it here, or in the first line of a CSV of polygons")
 
+    def check_choices(self, rows_read):
+        """Raises errors for entries of joints that have a text other than the allowed ones, for instance numbers in a column
+        `friction`. Each entry has one error, with its first row."""
+        entries, found = self.entries.get("entries of joints", ()), {}
+        for title, allowed in self.entries.get("choices of joints", {}).items():
+            wrong = [row for row in rows_read if row.properties.get(title, allowed[0]) not in allowed]
+            if wrong:
+                text = wrong[0].properties[title]
+                longer = [one for one in entries if one.startswith(title + " ")] if is_number(text) else []
+                found[title] = (f'fracture {wrong[0].title}: "{title}" is "{text}", must be one of '
+                                + ", ".join(f'"{one}"' for one in allowed)
+                                + (f"; {len(wrong) - 1} more with such an error" if len(wrong) > 1 else "")
+                                + (f'; did you mean the title "{longer[0]}"?' if longer else ""))
+        Errors(found.values()).throw(self.files)
+
     def features(self, section, kind):
         found = []
         for name, content in self.entries.get(section, {}).items():
             path, n = self.place(f"{section} > {name}"), 2 if self.dim == 2 else 3
             if (section, name) in self.tables:
                 rows_read = self.tables[section, name].fractures
+                self.check_choices(rows_read)
                 found += [Feature(kind, name, f"{kind} {row.title}", row.points, row.name or f"{name} {row.number}",
                                   content["file"], printable(row.properties)) for row in rows_read]
             for of, minimum in (("lines", 2), ("polygons", 3)):

@@ -80,8 +80,9 @@ def as_text(report):
     lines = [f"{report['cells']} cells, {report['nodes']} nodes, {report['fracture faces']} fracture faces; "
              f"gamma of cells: min {g['min']:.3g}, median {g['median']:.3g}"]
     for name, s in report["sets"].items():
-        lines.append(f"  {name}: {s['fractures']} fractures, {what} {s[what]:.6g}, {s['faces']} faces; edges: median {s['median edge']:.3g} m, "
-                     f"shortest {s['shortest edge']:.3g} m, target {s['median target size']:.3g} m, smaller near tips and in gaps")
+        lines.append(f"  {name}: {s['fractures']} fractures, {what} {s[what]:.6g}, {s['faces']} faces; edges on the fractures: "
+                     f"shortest {s['shortest edge']:.3g} m, median {s['median edge']:.3g} m; \"relative size\" gives "
+                     f"{s['median target size']:.3g} m, less near tips, intersections and other fractures")
     lines += [f"  {line}" for line in report["files"]]
     shown = report["repairs"][:10]
     lines += [f"  {line}" for line in shown]

@@ -143,14 +143,15 @@ def of_run(directory, options):
     start = float(scene.get("Time", {}).get("start", 0))
     dim = content.get("mesh", {}).get("dimension", 3)
     found = events.of_run(directory, content)
-    made = [("series", series.of_run(states, singles, name, clock, start, dim)),
+    made = [("series", series.of_run(states, singles, name, clock, start, dim, content.get("initial"))),
             ("events", magnitudes.over_time(found, steps, name, clock, start, dim)),
             ("catalogue", magnitudes.of_events(found, name)),
             ("magnitudes", magnitudes.of_step(states[-1], name) if states else None)]
     made += [(f"probe_{path.stem}", series.of_probe(path)) for path in sorted((directory / "probes").glob("*.csv"))]
     made += [found for path in sorted((directory / "probes").glob("*.csv")) for found in rates.of_probe(path)]
     yield from ((picture, figure) for picture, figure in made if figure)
-    yield "convergence", convergence.of_run(steps, name)
+    tolerance = scene.get("Solver", {}).get("tolerance")
+    yield "convergence", convergence.of_run(steps, name, None if tolerance is None else float(tolerance))
 
 
 def left_out(pictures, directory, why):

@@ -1,9 +1,10 @@
 """Picture of convergence: iterations of each step, and the residuals at its end."""
 import numpy as np
-from style import FAINT, LINES, look, plt
+from style import FAINT, INK, LINES, look, plt
 
 
-def of_run(steps, title):
+def of_run(steps, title, tolerance=None):
+    """Returns the figure. `tolerance` of the residuals, a line."""
     number = np.arange(1, len(steps) + 1)
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.2))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
@@ -28,13 +29,19 @@ def of_run(steps, title):
 
     measures = {name: np.array([step["measures"].get(name) for step in steps], dtype=float)  # NaN for a missing measure
                 for name in sorted(steps[-1]["measures"])}
-    drawn = {name: np.where(values > 0, values, np.nan) for name, values in measures.items() if np.any(values > 0)}
-    for i, (name, values) in enumerate(drawn.items()):
-        right.semilogy(number, values, markersize=3, label=name.replace("_", " "), **look(i))
-    right.set(xlabel="step", ylabel="relative residual (-)", title="residual at the end of each step")
+    drawn = {name: values for name, values in measures.items() if np.any(values > 0)}
+    right.set(xlabel="step", ylabel="relative residual (-)", title="residual at the end of each step", yscale="log")
     if drawn:
-        low, high = (limit(np.log10(limit_of(list(drawn.values())))) for limit, limit_of in ((np.floor, np.nanmin), (np.ceil, np.nanmax)))
+        positive = np.concatenate([values[values > 0] for values in drawn.values()])
+        low, high = np.floor(np.log10(np.min(positive))), np.ceil(np.log10(max(np.max(positive), tolerance or 0)))
         right.set_ylim(10.0**low, 10.0 ** max(high, low + 1))
+        for i, (name, values) in enumerate(drawn.items()):
+            right.plot(number, np.where(values == 0, 10.0**low, values), markersize=3, label=name.replace("_", " "), clip_on=False,
+                       **look(i))
+        if any(np.any(values == 0) for values in drawn.values()):
+            right.plot([], [], " ", label="zero: at the lower end")
+        if tolerance:
+            right.axhline(tolerance, color=INK, linestyle="--", linewidth=0.9, label="tolerance", zorder=1)
         right.yaxis.set_major_locator(plt.LogLocator(numticks=8))
         right.legend(loc="upper left", bbox_to_anchor=(1, 1), handlelength=3)
     else:

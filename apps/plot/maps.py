@@ -81,7 +81,8 @@ FEW = 12
 
 def write_names(ax, surface, names, singles, length, shown):
     """At traces that fractures.png shows in colour, the largest jump first, without names that would overlap. Of more than
-    FEW traces, only those with slip. `length` is the reference value of round-off, `shown` the box of the map."""
+    FEW traces only those with slip, if there are any. `length` is the reference value of round-off, `shown` the box of
+    the map."""
     slips = without_noise(surface.cell_data["slip"], length) > 0
     jump = np.linalg.norm(surface.cell_data["jump local"][:, 1:], axis=1)
     ends = np.array([surface.points[face[:2], :2].mean(axis=0) for face in surface.polygons])
@@ -89,7 +90,7 @@ def write_names(ax, surface, names, singles, length, shown):
               for trace in traces_of(surface, number, names[number] if number < len(names) else f"fracture {number}", singles)
               if trace.colour != FAINT]
     if len(traces) > FEW:
-        traces = [trace for trace in traces if np.any(slips[trace.faces])]
+        traces = [trace for trace in traces if np.any(slips[trace.faces])] or traces
     taken = []
     for trace in sorted(traces, key=lambda trace: -np.max(jump[trace.faces])):
         places = ends[trace.faces]

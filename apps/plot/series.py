@@ -89,8 +89,10 @@ def figure_of(title, times, name, content):
     return figure
 
 
-def of_run(steps, singles, title, wanted=None, start=0.0, dim=3):
-    """Returns the figure of at least two steps, or None without data."""
+def of_run(steps, singles, title, wanted=None, start=0.0, dim=3, initial=None):
+    """Returns the figure of at least two steps, or None without data. It begins with the initial state, if there is one."""
+    if initial and len(steps) > 1:
+        steps = [initial, *steps]
     content = list(panels(steps, singles, start, dim)) if len(steps) > 1 else []
     def largest(curves):
         return max((np.nanmax(abs(v), initial=0) for v in curves.values()), default=0)

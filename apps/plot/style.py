@@ -26,6 +26,7 @@ plt.rcParams.update({
     "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.grid": True, "grid.color": "#e3e5e9",
     "grid.linewidth": 0.6, "axes.axisbelow": True, "axes.spines.top": False, "axes.spines.right": False,
     "savefig.bbox": "tight", "savefig.pad_inches": 0.22, "figure.facecolor": "white", "figure.constrained_layout.use": True,
+    "figure.constrained_layout.w_pad": 0.1,
     "axes.formatter.limits": (-3, 4), "axes.formatter.useoffset": False, "image.cmap": "viridis",
 })
 
@@ -192,9 +193,28 @@ def nice(number):
     return float(max(k * power for k in (1, 2, 5) if k * power <= number * (1 + 1e-9)))
 
 
+def break_long_labels(figure):
+    """Breaks labels that are longer than their axes into two lines. Returns whether there are any."""
+    found = False
+    for ax in figure.axes:
+        box = ax.get_window_extent()
+        for label, k in ((ax.xaxis.label, 0), (ax.yaxis.label, 1)):
+            text = label.get_text()
+            length = label.get_window_extent().size[k] if text and label.get_visible() else 0
+            blanks = [i for i, letter in enumerate(text) if letter == " "]
+            if length > 1.1 * box.size[k] and blanks and "\n" not in text:
+                middle = min(blanks, key=lambda i: abs(i - len(text) / 2))
+                label.set_text(text[:middle] + "\n" + text[middle + 1:])
+                found = True
+    return found
+
+
 def save(figure, picture, dpi):
-    """Writes a PNG file; the layout is that of the first drawing, which is faster than a second layout."""
+    """Writes a PNG file. The layout is that of the first drawing, except if labels are longer than their axes: a second
+    layout takes time."""
     figure.set_dpi(dpi)
     figure.draw_without_rendering()
+    if break_long_labels(figure):
+        figure.draw_without_rendering()
     figure.set_layout_engine("none")
     figure.savefig(picture, dpi=dpi)

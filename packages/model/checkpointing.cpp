@@ -18,7 +18,7 @@ EarlierResults Checkpointing::restore() {
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
   return {std::move(checkpoint.journal),   checkpoint.content.at("restarts"),
           checkpoint.content.at("probes"), checkpoint.content.value("stages", nlohmann::json::array()),
-          std::move(checkpoint.vectors),   checkpoint.content.value("units", nlohmann::json::object())};
+          std::move(checkpoint.vectors),   checkpoint.content.value("common", nlohmann::json::object())};
 }
 
 bool Checkpointing::is_due(int n_steps, bool last) const {
@@ -46,7 +46,7 @@ void Checkpointing::write(const Results& results) {
   checkpoint.content["probes"] = results.probes_begun();
   checkpoint.content["steps"] = steps_.memory();
   checkpoint.content["stages"] = results.stages();
-  checkpoint.content["units"] = results.units_of_steps();
+  checkpoint.content["common"] = results.common_entries();
   checkpoint.content["begins stage"] = steps_.is_at_begin_of_stage();
   checkpoint.journal = results.journal(n_saved_steps_);
   checkpoint.vectors.merge(results.faces());

@@ -150,7 +150,11 @@ std::string network_description(const Comm& comm, const std::string& path, const
   network.resolve_files(std::filesystem::path(path).parent_path().string());
   list = base::effective(network, "network");
   Teuchos::Array<std::string> entries;
-  for (const auto& entry : base::specification<physics::Material>("").entries) entries.push_back(entry.name);
+  auto& choices = list.sublist("choices of joints");
+  for (const auto& entry : base::specification<physics::Material>("").entries) {
+    entries.push_back(entry.name);
+    if (!entry.choices.empty()) choices.set(entry.name, Teuchos::Array<std::string>(entry.choices));
+  }
   list.set("entries of joints", entries);
   return base::to_xml(list);
 }

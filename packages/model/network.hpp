@@ -78,8 +78,8 @@ struct Network {
 };
 
 /// Reads the network of the scene at `path` and nothing else. Returns its `Mesh file > network` with all defaults as
-/// XML. The entry "entries of joints" contains the names of entries that files of fractures may set. Throws an Error
-/// with a line for each mistake. Collective.
+/// XML. The entry "entries of joints" contains the names of entries that files of fractures may set, the section
+/// "choices of joints" the words that some of them take. Throws an Error with a line for each mistake. Collective.
 std::string network_description(const Comm& comm, const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace sprekk::model

@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace sprekk::model {
 
@@ -82,12 +84,12 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   if (earlier) {
     for (const auto& entry : earlier->journal) add(entry.at("step"));
     if (!earlier->stages.empty()) json_["stages"] = earlier->stages;
-    json_.update(earlier->units);
+    json_.update(earlier->common);
     json_["restarts"] = earlier->restarts;
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
   }
-  if (!earlier && (!probes_.empty() || model_.scene().output.events)) {
+  if (!earlier) {
     auto memory = model_.system().memory();
     memory.t = model_.time();
     model_.system().resume(model_.state(), memory);
@@ -96,6 +98,11 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     catalogue_.emplace(mesh, rule->rate, model_.time(), model_.system().outputs(model_.state()));
     if (earlier) catalogue_->resume(mesh, earlier->journal, earlier->faces);
   }
+  physics::for_each_physics([&]<physics::HasLog P>(P) {
+    const auto columns = P::Log::columns(model_.setting());
+    log_columns_.insert(log_columns_.end(), columns.begin(), columns.end());
+  });
+  if (!earlier) add_initial_state();
   if (!probes_.empty()) start_probes(earlier);
   write_json();
 }
@@ -116,12 +123,22 @@ void Results::add_intersections() {
   if (base::on_any_rank(*mesh.comm, piece.n_cells() > 0)) fractures_->keep({"intersections", piece});
 }
 
+/// Adds the state before the first step, if the scene defines it.
+void Results::add_initial_state() {
+  bool known = true;
+  physics::for_each_physics([&](auto physics) { known = known && physics.has_initial_state(model_.scene()); });
+  if (!known) return;
+  json initial = {{"time", model_.time()}};
+  add_fractures(initial, model_.system().outputs(model_.state()));
+  initial.update(reactions());
+  json_["initial"] = initial;
+  sets_ = singles_ = {};  // no step yet
+}
+
 /// Begins the tables of probes with the present state. A table of the previous run with the same probe is continued.
 void Results::start_probes(const std::optional<EarlierResults>& earlier) {
   auto& system = model_.system();
-  bool known = true;
-  if (!earlier)
-    physics::for_each_physics([&](auto physics) { known = known && physics.has_initial_state(model_.scene()); });
+  const bool known = earlier || json_.contains("initial");
   const auto outputs = system.outputs(model_.state());
   json now = reactions();
   add_fractures(now, outputs);
@@ -159,9 +176,9 @@ std::vector<json> Results::journal(int begin) const {
   return entries;
 }
 
-json Results::units_of_steps() const {
+json Results::common_entries() const {
   json entries = json::object();
-  for (const char* name : {"units", "tables"})
+  for (const char* name : {"units", "tables", "initial"})
     if (json_.contains(name)) entries[name] = json_[name];
   return entries;
 }
@@ -327,6 +344,18 @@ json Results::reactions() {
     units_.insert({fmt::format("{}", fmt::join(total.names, " > ")), total.unit});
   }
   return all;
+}
+
+std::vector<Real> Results::log_values() const {
+  std::vector<Real> values;
+  for (const auto& [title, section, result] : log_columns_) {
+    Real largest = std::numeric_limits<Real>::quiet_NaN();
+    for (const auto& member : json_["steps"].back().value(section, json::object()))
+      if (const auto& value = member.value(result, json()); value.is_number())
+        largest = std::fmax(largest, value.get<Real>());
+    values.push_back(largest);
+  }
+  return values;
 }
 
 std::vector<std::string> Results::fracture_digest() const {

@@ -28,7 +28,7 @@ struct EarlierResults {
   nlohmann::json probes = nlohmann::json::object();   ///< Results::probes_begun()
   nlohmann::json stages = nlohmann::json::array();    ///< Results::stages()
   io::NamedVectors faces = {};                        ///< Results::faces()
-  nlohmann::json units = nlohmann::json::object();    ///< Results::units_of_steps()
+  nlohmann::json common = nlohmann::json::object();   ///< Results::common_entries()
 };
 
 /// Writer of the states of a model into a directory, step by step. All files are complete after every write. All
@@ -46,8 +46,8 @@ class Results {
   nlohmann::json restarts() const { return json_.value("restarts", nlohmann::json::array()); }
   /// Stages that have begun, with their meshes.
   nlohmann::json stages() const { return json_.value("stages", nlohmann::json::array()); }
-  /// Entries with the units of quantities in the steps, as far as there are any.
-  nlohmann::json units_of_steps() const;
+  /// Entries about all steps, as far as there are any: units of quantities, and the initial state.
+  nlohmann::json common_entries() const;
   int n_steps() const { return n_steps_; }
   /// Data of fracture faces in events that may continue, for a checkpoint.
   io::NamedVectors faces() const { return catalogue_ ? catalogue_->memory(model_.mesh()) : io::NamedVectors(); }
@@ -55,6 +55,9 @@ class Results {
   /// Adds the state at the end of a step; `last` writes field files regardless of "every". Returns the numbers of open,
   /// sticking and slipping fracture faces.
   std::array<long long, 3> add_step(const StepTaken& taken, bool last);
+  /// Columns of the log, and their values after the last step; NaN if undefined. Stored data of rank 0.
+  const std::vector<physics::LogColumn>& log_columns() const { return log_columns_; }
+  std::vector<Real> log_values() const;
   /// Returns warnings for the states added since the last call; each text occurs only once.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// Lines with the single fractures in each contact state after the last step. Stored data.
@@ -75,6 +78,7 @@ class Results {
   void add(const nlohmann::json& step);
   void follow_change();
   void begin_stage(const std::string& name, Real time);
+  void add_initial_state();
   void start_probes(const std::optional<EarlierResults>& earlier);
   void add_probes(const nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
   void add_error_bounds(const nlohmann::json& fractures, const std::vector<assembly::OutputField>& outputs);
@@ -99,6 +103,7 @@ class Results {
   std::optional<io::SeriesFiles> series_;       // files of the probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
   std::map<std::string, std::string> units_;    // units of reactions()
+  std::vector<physics::LogColumn> log_columns_;
   nlohmann::json json_, probes_begun_ = nlohmann::json::object();
   int n_steps_ = 0, n_written_ = 0;
   std::vector<Real> ends_;  // end times of the steps so far, s

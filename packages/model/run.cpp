@@ -18,6 +18,7 @@
 
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -32,9 +33,13 @@ namespace {
 /// Table of time steps in the log, one line per step.
 class Progress {
  public:
-  Progress(base::Log& log, const Steps& steps) : log_(log), steps_(steps), share_before_(steps.share_done()) {
-    log_.info("{:>12} {:>10} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9}", "time", "dt", "Newton", "linear", "cuts",
-              contact::state_names[0], contact::state_names[1], contact::state_names[2], "elapsed", "remaining");
+  Progress(base::Log& log, const Steps& steps, const Results& results)
+      : log_(log), steps_(steps), results_(results), share_before_(steps.share_done()) {
+    std::string columns;
+    for (const auto& column : results.log_columns()) columns += fmt::format(" {:>9}", column.title);
+    log_.info("{:>12} {:>10} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8}{} {:>9} {:>9}", "time", "dt", "Newton", "linear",
+              "cuts", contact::state_names[0], contact::state_names[1], contact::state_names[2], columns, "elapsed",
+              "remaining");
   }
 
   void add(const StepTaken& step, const std::array<long long, 3>& faces) {
@@ -45,14 +50,18 @@ class Progress {
     const Real remaining = steps_.n_left() > 0 || share == share_before_
                                ? elapsed / done_ * steps_.n_left()
                                : elapsed * (1 - share) / (share - share_before_);
-    log_.info("{:>12.5g} {:>10.3g} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8.1f}s {:>8.1f}s", report.time,
+    std::string values;
+    for (const Real value : results_.log_values())
+      values += std::isnan(value) ? fmt::format(" {:>9}", "-") : fmt::format(" {:>9.3g}", value);
+    log_.info("{:>12.5g} {:>10.3g} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8}{} {:>8.1f}s {:>8.1f}s", report.time,
               report.time - step.begin, report.newton_iterations, solve::iterations(report.linear_solves), report.cuts,
-              faces[0], faces[1], faces[2], elapsed, remaining);
+              faces[0], faces[1], faces[2], values, elapsed, remaining);
   }
 
  private:
   base::Log& log_;
   const Steps& steps_;
+  const Results& results_;
   Real share_before_;
   int done_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -199,7 +208,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
                   base::Log& log, const std::function<bool()>& should_stop) {
   const Scene& scene = model.scene();
   if (!steps.any()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
-  Progress progress(log, steps);
+  Progress progress(log, steps, results);
   std::string floating;
   while (steps.any()) {
     bool interrupted = false;
@@ -360,7 +369,13 @@ std::size_t check(const RunOptions& options, RCP<const Comm> comm) {
 std::string mesh_info(const std::string& path, const std::vector<std::string>& fractures) {
   mesh::MshOptions options;
   for (const auto& name : fractures) options.fractures[std::string(base::trimmed(name))];
-  return mesh::to_text(mesh::describe(mesh::read_msh(path, options)));
+  try {
+    return mesh::to_text(mesh::describe(mesh::read_msh(path, options)));
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.find("among the fractures") == std::string::npos) throw;
+    throw Error(message + "; this command lists fractures by --fractures a,b");
+  }
 }
 
 std::string reference() {

@@ -155,6 +155,23 @@ concept HasWarnings = requires {
   typename P::Warnings;
 };
 
+/// Log: columns of the table of steps in the log of a run. Each is the largest value of a result over the members of a
+/// section of a step in results.json, for example `max_slip` over `fractures`.
+struct LogColumn {
+  std::string title, section, result;
+};
+struct LogFunctions {
+  std::vector<LogColumn> (*columns)(const Setting&);
+};
+template <class Group>
+concept IsLog = requires {
+  LogFunctions{&Group::columns};
+};
+template <class P>
+concept HasLog = requires {
+  typename P::Log;
+};
+
 /// Tables: table of quantities at points of fractures, see estimate::StateTable.
 struct TablesFunctions {
   /// Name of the entry in results.json and of the CSV file; spaces become underscores
@@ -213,6 +230,7 @@ constexpr bool has_complete_groups() {
   if constexpr (HasEstimate<P>) static_assert(IsEstimate<typename P::Estimate>);
   if constexpr (HasChange<P>) static_assert(IsChange<typename P::Change>);
   if constexpr (HasWarnings<P>) static_assert(IsWarnings<typename P::Warnings>);
+  if constexpr (HasLog<P>) static_assert(IsLog<typename P::Log>);
   if constexpr (HasEvents<P>) static_assert(IsEvents<typename P::Events>);
   if constexpr (HasTables<P>) static_assert(IsTables<typename P::Tables>);
   if constexpr (HasSolvability<P>) static_assert(IsSolvability<typename P::Solvability>);

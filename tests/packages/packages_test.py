@@ -133,7 +133,7 @@ class Packages(unittest.TestCase):
     def test_4_packages_that_are_missing(self):
         self.debian.call("apt-get remove -y python3-vtk9")
         self.assertEqual(self.user("sprekk plot two", expect=1),
-                         "sprekk: packages are missing; install them with: sudo apt-get install python3-vtk9\n")
+                         "sprekk: plot requires further packages; install them with: sudo apt-get install python3-vtk9\n")
 
     def test_5_removal(self):
         files = self.debian.call("dpkg -L sprekk").split()

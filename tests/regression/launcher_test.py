@@ -133,7 +133,11 @@ class Launcher(ProgramTest):
         self.assertEqual(self.launch("--version", launcher="prefix/bin/sprekk")[0], self.call("--version")[0])
         self.assertNotRegex(self.launch("--help", launcher="prefix/bin/sprekk")[0], "[.]/sprekk|sprekk test")
         self.assertRegex(self.launch("plot", "out", expect=1, launcher="prefix/bin/sprekk")[1],
-                         "^sprekk: packages are missing; install them with: sudo apt-get install .*python3-vtk9\n$")
+                         "^sprekk: plot requires further packages; install them with: sudo apt-get install .*python3-vtk9\n$")
+        for option in ("--help", "-h"):
+            out, err = self.launch("plot", option, launcher="prefix/bin/sprekk")
+            self.assertRegex(out, r"^  sprekk plot PATH[.]{3} .*\n$")
+            self.assertIn("the options of plot are printed when its packages are installed: python3 ", err)
         shutil.copytree(ROOT / "xml/new", home / "xml/new")
         out, _ = self.launch("new", "slope", "a.xml", launcher="prefix/bin/sprekk")
         self.assertEqual(out, "wrote a.xml; next: sprekk run a.xml\n")

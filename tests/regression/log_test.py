@@ -8,7 +8,7 @@ from program import ProgramTest, main
 
 CYCLIC = "verification/cyclic_2d.xml"  # 8 steps
 PUSH = "seed/push_2d.xml"
-STEP = re.compile(r"^ +(\d+) +1( +\d+){6} +\d+\.\ds +\d+\.\ds$", re.MULTILINE)  # time, length, counts, seconds
+STEP = re.compile(r"^ +(\d+) +1( +\d+){6} +\S+ +\d+\.\ds +\d+\.\ds$", re.MULTILINE)  # time, length, counts, slip, seconds
 QUIET = ["--set", "Output.vtu=false"]
 
 
@@ -30,6 +30,17 @@ class Log(ProgramTest):
                                           "slip on 0 of 1 fractures", 'has slipped on 1 of 1 fractures: "fracture" (100 % of its area)',
                                           "results in out"])
             self.assertEqual(len(lines), len(set(lines)), out)
+
+    def test_slip_and_pressure_of_wells(self):
+        """The table of steps contains the largest slip and the pressure of the well, as results.json."""
+        out, _ = self.call("run", self.scene("poro/injection_days_2d.xml"), "--output", "out", *QUIET, "--set", "Time.end=1728000", "--set", "Time.steps=4")
+        lines = [line.split() for line in out.splitlines()]
+        titles = next(k for k, line in enumerate(lines) if line and line[0] == "time")
+        self.assertEqual(lines[titles][8:12], ["slip", "[m]", "well", "[Pa]"])
+        for line, step in zip(lines[titles + 1:], self.results()["steps"]):
+            values = step["fractures"]["fault"]["max_slip"], step["wells"]["injector"]["pressure"]
+            self.assertEqual(line[8:10], [f"{value:.3g}" for value in values])
+        self.assertGreater(values[0], 1e-4)
 
     def test_quiet(self):
         """With --quiet standard output is empty. Warnings are on standard error and in the file."""

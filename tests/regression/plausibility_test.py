@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Warnings about implausible input: plausibility_test.py PROGRAM ROOT MPIEXEC"""
+import math
 import re
 
 from networks import mesh_of
@@ -114,6 +115,29 @@ class Plausibility(ProgramTest):
         err = self.warnings(scene, mesh, "Materials.mapped joint.friction coefficient=3")
         self.assertIn('mapped joint > "friction coefficient": is 3:', err)
         self.assertIn('fracture "A4" > "friction coefficient": is 2, with 1 other like it:', err)
+
+    def test_hydraulic_opening(self):
+        """Prescribed pressures above the smallest principal compression, in 2D of the directions in the plane."""
+        text = self.scene("poro/injection_days_2d.xml").read_text()
+        well = self.folder / "well.xml"
+        well.write_text(text.replace('name="rate" type="string" value="4e-7*min(t/86400, 1)"', 'name="pressure" type="string" value="10e6 + t"'))
+        plane = 27.5e6 - math.hypot(2.5e6, 7e6)  # of -30, -25 and 7 MPa
+        space = 32.5e6 - math.hypot(7.5e6, 6e6)  # of -25, -40 and 6 MPa in the plane of x and z
+        fluid = [*STRESS, "Bulk.initial stress={-8e6, -7e6, -1e6, 0}"]
+        for scene, entry, section, bound, sets in (
+                (well, "Flow.Wells.injector.pressure", "Flow > Wells > injector", plane, []),
+                (well, "Boundary conditions.west.pressure", "Boundary conditions > west", plane, []),
+                (self.scene("poro/injection_3d.xml"), "Boundary conditions.top.pressure", "Boundary conditions > top", space, ["Mesh.cells={10, 10, 10}"]),
+                (SHEAR, "Fractures.shear plane.fluid pressure", "Fractures > shear plane", 7e6, fluid)):
+            for factor, ranks in ((0.999, 1), (1.001, 1), (1.001, 2)):
+                err = self.warnings(scene, *sets, f"{entry}={factor * bound}", ranks=ranks)
+                self.assertEqual(err.count("(hydraulic opening)"), factor > 1, err)
+                if factor > 1:
+                    self.assertIn(f'Sprekk > {section} > "', err)
+                    self.assertIn(f"reaches {factor * bound:.4g} Pa, and the smallest principal compression there is {bound:.4g} Pa", err)
+        duration = 30 * 86400
+        err = self.warnings(well, f"Flow.Wells.injector.pressure={plane} + 1e3*t/{duration}")  # above at the end only
+        self.assertIn(f"reaches {plane + 1e3:.4g} Pa", err)
 
     def test_just_below(self):
         """Values at the bounds give no warning."""

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Pictures of runs and of points: plot_test.py PROGRAM ROOT MPIEXEC"""
+import io
 from pathlib import Path
 
 from plotting import PlotTest, plot  # before other modules: it skips the test without them
@@ -8,6 +9,7 @@ import bulk
 import flow
 import numpy as np
 import read
+import style
 
 
 TABLES = ["fractures_long.csv", "fractures_wide.csv"]
@@ -179,13 +181,35 @@ class Pictures(PlotTest):
         panels = {ax.get_ylabel().split(" (")[0]: ax for ax in made["series"].axes}
         times, volume = panels["injected volume"].lines[0].get_data()
         self.assertEqual(panels["injected volume"].get_ylabel(), "injected volume (m²)")
-        self.assertTrue(np.allclose(times, [1, 2, 3]))
-        self.assertTrue(np.allclose(volume, 6e-5 * 3600 * np.cumsum([0.5, 1, 1])))
+        self.assertTrue(np.allclose(times, [0, 1, 2, 3]))
+        self.assertTrue(np.allclose(volume, 6e-5 * 3600 * np.cumsum([0, 0.5, 1, 1])))
+        self.assertAlmostEqual(panels["pressure in wells"].lines[0].get_ydata()[0], 10)  # MPa, the initial pressure
+        self.expect_residuals(made["convergence"], content, 1e-11)
         lines = {line.get_label(): line.get_ydata() for line in panels["largest slip"].lines}
-        wanted = [step["fractures"]["west"]["max_slip"] for step in content["steps"]]
+        wanted = [0, *(step["fractures"]["west"]["max_slip"] for step in content["steps"])]
         self.assertTrue(np.allclose(lines["west"] / lines["west"][-1], np.array(wanted) / wanted[-1]))
         names = {text.get_text() for ax in made["maps"].axes for text in ax.texts}
         self.assertEqual(names, set(content["steps"][-1]["fractures"]))
+
+    def expect_residuals(self, figure, content, tolerance):
+        """Measures of all steps without gaps, zeros at the lower end, and a line at the tolerance."""
+        ax = figure.axes[-1]
+        lines = {line.get_label(): line.get_ydata() for line in ax.lines}
+        self.assertEqual(list(lines["tolerance"]), [tolerance, tolerance])
+        low = ax.get_ylim()[0]
+        for name in content["steps"][-1]["measures"]:
+            measures = np.array([step["measures"][name] for step in content["steps"]])
+            if np.any(measures > 0):
+                np.testing.assert_allclose(lines[name.replace("_", " ")], np.where(measures > 0, measures, low))
+
+    def test_long_labels(self):
+        """A label longer than its axes has two lines, others have one."""
+        figure, axes = style.plt.subplots(1, 2, figsize=(6, 2))
+        axes[0].set_ylabel("shear traction / effective normal compression (-)")
+        axes[1].set_ylabel("slip (mm)")
+        style.save(figure, io.BytesIO(), 75)
+        self.assertEqual([ax.get_ylabel() for ax in axes], ["shear traction / effective\nnormal compression (-)", "slip (mm)"])
+        self.assertLess(axes[0].yaxis.label.get_window_extent().height, 150)
 
     def test_impermeable_rock(self):
         """The rock has no pressure, the fractures have one."""

@@ -67,6 +67,19 @@ class Results(ProgramTest):
             self.assertLessEqual(memory["peak_bytes_largest_rank"], memory["peak_bytes_all_ranks"])
             self.assertIn("direct", r["solver"]["choice"])
 
+    def test_initial_state(self):
+        """Values at the start, on each number of ranks and after a restart. Steady flow has no initial state."""
+        sets = [QUIET, "Output.checkpoints.steps=1", "Time.steps=2"]
+        for ranks in (1, 2):
+            start = self.run_scene("poro/injection_days_2d.xml", *sets, "Time.end=172800", ranks=ranks)["initial"]
+            self.assertEqual((start["time"], start["single_fractures"]["max_slip"]), (0, [0]))
+            self.assertAlmostEqual(start["fractures"]["fault"]["mean_traction"]["local"][1], 7e6, delta=1)  # initial shear stress
+            self.assertAlmostEqual(start["wells"]["injector"]["pressure"], 10e6, delta=1)
+            words = [word for entry in (*sets, "Time.end=345600") for word in ("--set", entry)]
+            self.call("run", self.scene("poro/injection_days_2d.xml"), "--output", "out", "--restart", *words, ranks=ranks)
+            self.assertEqual(self.results()["initial"], start)
+        self.assertNotIn("initial", self.run_scene("flow/source_2d.xml", QUIET))
+
     def test_steps_do_not_write_all_results(self):
         """results.json is rewritten every few seconds and not after each step, which would take quadratic time."""
         timing = self.run_scene("verification/uniaxial_2d.xml", "Output.vtu=false", "Time.steps=100")["timing"]

@@ -422,6 +422,11 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
   return all;
 }
 
+std::vector<LogColumn> Flow::Log::columns(const Setting& setting) {
+  if (!is_in(setting.scene) || setting.scene.flow->wells.empty()) return {};
+  return {{"well [Pa]", "wells", "pressure"}};
+}
+
 std::vector<std::string> Flow::Warnings::of_state(const Setting& setting, const std::vector<Real>&,
                                                   const std::vector<assembly::OutputField>& outputs) {
   const auto& [scene, mesh, start] = setting;

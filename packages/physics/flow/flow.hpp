@@ -144,6 +144,9 @@ struct Flow : Physics<Flow> {
     static std::string refuses(const Scene& scene, const estimate::Functional& J);
     static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
   };
+  struct Log {
+    static std::vector<LogColumn> columns(const Setting& setting);
+  };
   struct Warnings {
     static std::vector<std::string> of_input(const Setting&, const std::vector<Real>&) { return {}; }
     static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,

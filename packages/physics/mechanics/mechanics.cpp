@@ -394,6 +394,11 @@ std::vector<std::string> Mechanics::Warnings::of_state(const Setting& setting, c
   return warnings;
 }
 
+std::vector<LogColumn> Mechanics::Log::columns(const Setting& setting) {
+  if (!is_in(setting.scene) || setting.mesh.fracture_names.empty()) return {};
+  return {{"slip [m]", "fractures", "max_slip"}};
+}
+
 EventSource Mechanics::Events::source() {
   return {.path = "plastic jump local",
           .force = "traction local",

@@ -136,6 +136,9 @@ struct Mechanics : Physics<Mechanics> {
     static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,
                                              const std::vector<assembly::OutputField>& outputs);
   };
+  struct Log {
+    static std::vector<LogColumn> columns(const Setting& setting);
+  };
   struct Events {
     static EventSource source();
   };

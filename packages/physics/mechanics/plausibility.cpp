@@ -1,4 +1,5 @@
-// Warnings about implausible mechanical input.
+#include "physics/mechanics/plausibility.hpp"
+
 #include "assembly/geometry.hpp"
 #include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
@@ -19,6 +20,23 @@ namespace sprekk::physics {
 
 using mesh::norm;
 using mesh::operator-;
+
+std::vector<Real> some_of(const std::vector<Real>& times) {
+  constexpr std::size_t maximum = 12;
+  std::vector<Real> some;
+  const std::size_t n = times.size(), stride = (n + maximum - 1) / maximum;
+  for (std::size_t k = (n - 1) % stride; k < n; k += stride) some.push_back(times[k]);
+  return some;
+}
+
+Real largest_principal(const std::vector<Real>& s) {
+  const Real xy = s[3], yz = s.size() > 4 ? s[4] : 0, xz = s.size() > 4 ? s[5] : 0;
+  const Real mean = (s[0] + s[1] + s[2]) / 3, a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
+  const Real p = std::sqrt((a * a + b * b + c * c + 2 * (xy * xy + yz * yz + xz * xz)) / 6);
+  if (p == 0) return mean;
+  const Real det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+  return mean + 2 * p * std::cos(std::acos(std::clamp(det / (2 * p * p * p), Real(-1), Real(1))) / 3);
+}
 
 namespace {
 
@@ -52,24 +70,6 @@ void take_largest(const Comm& comm, std::vector<Extreme>& all) {
     }
   }
   for (std::size_t k = 0; k < all.size(); ++k) all[k].value = maximum[k];
-}
-
-/// Calls look() and ignores errors of expressions, which the first affected step reports. Not collective.
-template <class Look>
-void looking(const Look& look) {
-  try {
-    look();
-  } catch (const Error&) {
-  }
-}
-
-/// At most twelve of the times, including the last one.
-std::vector<Real> some_of(const std::vector<Real>& times) {
-  constexpr std::size_t maximum = 12;
-  std::vector<Real> some;
-  const std::size_t n = times.size(), stride = (n + maximum - 1) / maximum;
-  for (std::size_t k = (n - 1) % stride; k < n; k += stride) some.push_back(times[k]);
-  return some;
 }
 
 /// Calls use(face centre, piece of rock) for owned faces of a condition.
@@ -285,16 +285,6 @@ std::vector<std::string> joint_doubts(const Setting& setting) {
         doubt.what + others, doubt.why, doubt.advice));
   }
   return all;
-}
-
-/// Largest eigenvalue of a symmetric tensor XX, YY, ZZ, XY[, YZ, XZ].
-Real largest_principal(const std::vector<Real>& s) {
-  const Real xy = s[3], yz = s.size() > 4 ? s[4] : 0, xz = s.size() > 4 ? s[5] : 0;
-  const Real mean = (s[0] + s[1] + s[2]) / 3, a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
-  const Real p = std::sqrt((a * a + b * b + c * c + 2 * (xy * xy + yz * yz + xz * xz)) / 6);
-  if (p == 0) return mean;
-  const Real det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
-  return mean + 2 * p * std::cos(std::acos(std::clamp(det / (2 * p * p * p), Real(-1), Real(1))) / 3);
 }
 
 /// Warns about initial stress in tension. Collective.

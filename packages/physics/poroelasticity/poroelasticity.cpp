@@ -5,6 +5,7 @@
 #include "mesh/facets.hpp"
 #include "physics/comparison.hpp"
 #include "physics/poroelasticity/fracture_opening.hpp"
+#include "physics/poroelasticity/hydraulic_opening.hpp"
 #include "physics/poroelasticity/poroelastic_coupling.hpp"
 #include "physics/scene.hpp"
 
@@ -132,6 +133,11 @@ std::vector<std::string> Poroelasticity::warnings(const Setting& setting) {
                       scene.origin, name, material.biot.text(), material.porosity.text()));
   }
   return all;
+}
+
+std::vector<std::string> Poroelasticity::Warnings::of_input(const Setting& setting, const std::vector<Real>& times) {
+  if (!Mechanics::is_in(setting.scene)) return {};  // a "fluid pressure" of fractures needs no Flow
+  return hydraulic_opening_doubts(setting, times);
 }
 
 }  // namespace sprekk::physics

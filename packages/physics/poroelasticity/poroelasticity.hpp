@@ -23,6 +23,14 @@ struct Poroelasticity : Physics<Poroelasticity> {
   static void compare(Comparison& comparison);
   static void add_modules(const Setting& setting, Modules& modules);
   static std::vector<std::string> warnings(const Setting& setting);
+
+  struct Warnings {
+    static std::vector<std::string> of_input(const Setting& setting, const std::vector<Real>& times);
+    static std::vector<std::string> of_state(const Setting&, const std::vector<Real>&,
+                                             const std::vector<assembly::OutputField>&) {
+      return {};
+    }
+  };
 };
 
 /// Stabilisation of the fluid pressure in deforming rock; empty without poroelasticity. Collective.
