@@ -2,8 +2,10 @@
 
 The rows compare blocks with exact solutions, or check a random network. The last row computes six load cases and three
 flow cases of a 3D network. The last line gives the number of missed bounds, the largest error of the exact rows, the
-minutes of these cases with the mesh, and the CPU time of a further load case over that of one linear solve."""
+CPU minutes of these cases with the mesh, and the CPU time of a further load case over that of one linear solve."""
 import math
+import os
+import resource
 import sys
 import time
 
@@ -12,7 +14,10 @@ import numpy as np
 from perf.common import options as common
 from perf.common import table
 
-COLUMNS = {"row": "", "cells": "d", "largest error": ".1e", "bound": ".0e"}
+COLUMNS = {"row": "", "cells": "d", "largest error": ".1e", "bound": ".0e", "Krylov": "d", "of flow": "d", "CPU min": ".2f",
+           "case/solve": ".2f", "MB": ".0f"}
+BOUNDS = {"minutes": 15, "case_over_solve": 1.3}
+FORMATS = {"worst_error": ".1e", "minutes": ".2f", "case_over_solve": ".2f"}
 SYMMETRY = 1e-8
 HALF_LENGTH = 0.25  # of cracks, m
 BOX = 10.0  # edge of the box of cracks, m
@@ -135,38 +140,46 @@ def with_cost(solver, work):
     return found, (seconds - solver.jacobian_seconds - first) / sum(further)
 
 
-def network(number):
-    """Returns (number of cells, largest asymmetry or excess of a lower bound, minutes, further case over solve).
+def cpu_minutes():
+    """CPU time of this process and of its mesh generator."""
+    return sum(os.times()[:4]) / 60
 
-    The minutes contain mesh, models, the step to the state, six load cases and the pressure under uniform stress, and
-    three flow cases under linear pressure. Up to BOUNDED polygons the other conditions follow, for the order of bounds."""
+
+def network(number):
+    """Returns the columns of a network after its name.
+
+    The error is the largest asymmetry or excess of a lower bound. The minutes contain mesh, models, the step to the state,
+    six load cases and the pressure under uniform stress, and three flow cases under linear pressure. Up to BOUNDED polygons
+    the other conditions follow, for the order of bounds. Iterations are the largest numbers of a solve."""
     from mpi4py import MPI
     import sprekk
     from sprekk.network import with_mesh
     from sprekk.upscale import asymmetry, components
     from sprekk.upscale.flow import Flow
     from sprekk.upscale.solid import Solid
-    begin, comm = time.perf_counter(), MPI.COMM_WORLD
+    begin, comm = cpu_minutes(), MPI.COMM_WORLD
     scene = with_mesh(sprekk.Scene(discs(number)), comm)
-    solid, flow = Solid(scene, comm, [[-5e6, -8e6, -10e6, 0, 0, 0]], [0]), Flow(scene, comm)
+    pairs = [("uniform", "linear"), ("linear", "uniform")][:2 if number <= BOUNDED else 1]
+    solid = Solid(scene, comm, [[-5e6, -8e6, -10e6, 0, 0, 0]], [0], conditions=[of_solid for of_solid, _ in pairs])
+    flow = Flow(scene, comm)
     solid.estimates = flow.estimates = False
     solid.step()
-    opening, tangents, K, ratios, minutes = solid.openings(), {}, {}, [], None
-    pairs = [("uniform", "linear"), ("linear", "uniform")][:2 if number <= BOUNDED else 1]
+    opening, tangents, K, ratios, minutes, iterations = solid.openings(), {}, {}, [], None, []
     for of_solid, of_flow in pairs:
-        solver = solid.free if of_solid == "uniform" else solid.constrained
-        found, ratio = with_cost(solver, lambda: solid.tangents((of_solid,)))
+        solvers = (solid.free if of_solid == "uniform" else solid.constrained, flow.constrained if of_flow == "linear" else flow.open)
+        found, ratio = with_cost(solvers[0], lambda: solid.tangents((of_solid,)))
         tangents.update(found)
-        solver = flow.constrained if of_flow == "linear" else flow.open
-        K[of_flow], of_case = with_cost(solver, lambda: flow.permeability(of_flow, opening))
+        K[of_flow], of_case = with_cost(solvers[1], lambda: flow.permeability(of_flow, opening))
         ratios += [ratio, of_case]
-        minutes = minutes or (time.perf_counter() - begin) / 60
+        iterations.append([max(n for n, _ in solver.solves) for solver in solvers])
+        minutes = minutes or cpu_minutes() - begin
     tensors = [*K.values(), *(tangent.compliance for tangent in tangents.values())]
     error = max(map(asymmetry, tensors))
     if len(pairs) > 1:
         error = max(error, components.excess(K["uniform"], K["linear"]),
                     components.excess(tangents["linear"].compliance, tangents["uniform"].compliance))
-    return len(solid.free.model.mesh.cells), error, minutes, max(ratios)
+    return [len(solid.free.model.mesh.cells), error, *map(int, np.max(iterations, axis=0)), minutes, max(ratios),
+            resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3]
 
 
 def rows(options):
@@ -189,19 +202,21 @@ def main(words):
     options = parser.parse_args(words)
     number = options.fractures or (10 if options.quick else 1000)
     every = [*rows(options), (f"network of {number} polygons", None, SYMMETRY)]
-    shown, failures, worst, minutes, ratio = table.Table(COLUMNS), 0, 0.0, None, None
+    shown, failed, total = table.Table(COLUMNS), [], {"failures": 0, "worst_error": 0.0}
     for name, work, bound in common.matching(options, every, lambda row: row[0]):
-        cells = None
+        of_network = [None] * 5
         if work:
-            error = work()
-            worst = max(worst, error) if bound <= 1e-6 else worst
+            cells, error = None, work()
+            total["worst_error"] = max(total["worst_error"], error) if bound <= 1e-6 else total["worst_error"]
         else:
-            cells, error, minutes, ratio = network(number)
-        failures += not error <= bound
-        shown.add([name, cells, error, bound])
-    shown.write(options.output / "upscale.csv")
-    print(f"failures={failures} worst_error={worst:.1e} minutes={minutes or 0:.2f} case_over_solve={ratio or 0:.2f}")
-    return int(failures > 0)
+            cells, error, *of_network = network(number)
+            total |= {"minutes": of_network[2], "case_over_solve": of_network[3]}
+        if not error <= bound:
+            failed.append(f"{name}: error {error:.1e}, at most {bound:g} required")
+        shown.add([name, cells, error, bound, *of_network])
+    total["failures"] = len(failed)
+    bounds = {name: bound for name, bound in BOUNDS.items() if name in total} if not options.quick else {}
+    return table.finish(options, shown, total, FORMATS, bounds, failed)
 
 
 if __name__ == "__main__":

@@ -129,7 +129,7 @@ def run(scene, stresses=None, pressures=None, conditions=CONDITIONS, *, inner=No
     if sliding not in SLIDING:
         raise _sprekk.Error(f'sliding: is "{sliding}", must be one of: {", ".join(SLIDING)}')
     flow = Flow(scene, comm) if "Flow" in scene.entries else None
-    solid = Solid(scene, comm, stresses, pressures, sliding) if deforms(scene) else None
+    solid = Solid(scene, comm, stresses, pressures, sliding, conditions) if deforms(scene) else None
     if not flow and not solid:
         raise _sprekk.Error(f"{scene.name}: has neither elastic constants nor the section Flow")
     for part in (flow, solid):

@@ -60,7 +60,8 @@ class Solid:
     """Deformation of a block, with two models of the same mesh.
 
     free  uniform stress on the boundary, with supports against rigid motions: takes the steps of the path
-    constrained  prescribed displacement of the boundary: follows the states of `free`, for responses only
+    constrained  prescribed displacement of the boundary: follows the states of `free`, for responses only; closed unless
+                 `conditions` require it
 
     estimates  False: without estimates of discretisation errors, whose cost is about twice that of the solves
     sliding    tangent of faces that slip in the last step: they "stick", or "slip" further in the same direction
@@ -70,7 +71,7 @@ class Solid:
 
     estimates = True
 
-    def __init__(self, scene, comm, stresses, pressures, sliding="stick"):
+    def __init__(self, scene, comm, stresses, pressures, sliding="stick", conditions=("linear", "uniform")):
         self.scene, self.comm, self.sliding = scene, comm, sliding
         check_laws(scene)
         self.first_pressure = initial_pressure(scene)
@@ -80,6 +81,8 @@ class Solid:
         self.constrained = self._linear_model(fixed, {})
         self.boundary = Boundary(self.constrained.model)
         self.volume, self.dim = self.boundary.volume, self.constrained.model.mesh.dim
+        if not {"linear", "periodic"} & {*conditions}:
+            self.constrained.model.close()  # before the second model is made
         self.unit = max(1e6, np.max(np.abs(self.stresses), initial=0))
         self.free = self._linear_model(*self._uniform())
         self.moves_pores = not is_impermeable(scene)
