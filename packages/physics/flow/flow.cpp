@@ -1,5 +1,6 @@
 #include "physics/flow/flow.hpp"
 
+#include "assembly/geometry.hpp"
 #include "base/check.hpp"
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
@@ -407,7 +408,53 @@ void add_channel_warnings(const Setting& setting, std::vector<std::string>& warn
                                      "the channel has no effect", "remove it, or name fractures that intersect"));
 }
 
+/// Returns whether fluid may leave, or enter other than by wells with a rate.
+bool is_open(const Scene& scene) {
+  const auto any = [](const auto& all, const auto& has) {
+    return std::any_of(all.begin(), all.end(), [&](const auto& named) { return has(named.second); });
+  };
+  return any(scene.flow->wells, [](const auto& well) { return well.pressure.has_value(); }) ||
+         any(scene.boundary_conditions, [](const auto& one) { return one.pressure || one.flux; }) ||
+         any(scene.regions, [](const auto& region) { return region.pressure.has_value(); }) ||
+         any(scene.fractures, [](const auto& fracture) { return !fracture.held_pressures.empty(); });
+}
+
+/// Warns about wells that inject more than 1 % of the volume of rock without an outlet. Collective.
+void add_injection_warnings(const Setting& setting, const std::vector<Real>& times,
+                            std::vector<std::string>& warnings) {
+  constexpr Real maximum = 0.01;
+  const auto& [scene, mesh, start] = setting;
+  if (!Mechanics::is_in(scene) || is_open(scene)) return;
+  Real here = 0;
+  const auto volumes = assembly::cell_volumes(mesh);
+  for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) here += volumes[c];
+  const Real volume = base::sum_over_ranks(*mesh.comm, here);
+  Real injected = 0, end = start;
+  try {
+    for (const Real t : times) {
+      if (injected > maximum * volume) break;
+      for (const auto& well : wells_in(scene, mesh.dim())) injected += (t - end) * (*well.rate)(well.points[0], t);
+      end = t;
+    }
+  } catch (const Error&) {  // of an expression; the first step reports it
+    return;
+  }
+  if (!(injected > maximum * volume)) return;
+  warnings.push_back(implausible(
+      scene.origin + ": Sprekk > Flow > Wells",
+      fmt::format("{:.3g} {} of fluid enter until t = {:.4g} s, {:.3g} % of the volume of the rock, and none leave",
+                  injected, mesh.dim() == 2 ? "m^2" : "m^3", end, 100 * injected / volume),
+      "the fluid opens fractures or expands the rock by this volume, and an equilibrium need not exist",
+      "check rates and units, or give a pressure at a boundary"));
+}
+
 }  // namespace
+
+std::vector<std::string> Flow::Warnings::of_input(const Setting& setting, const std::vector<Real>& times) {
+  std::vector<std::string> all;
+  if (is_in(setting.scene)) add_injection_warnings(setting, times, all);
+  return all;
+}
 
 std::vector<std::string> Flow::warnings(const Setting& setting) {
   const auto& [scene, mesh, start] = setting;

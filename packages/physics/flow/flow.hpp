@@ -148,7 +148,7 @@ struct Flow : Physics<Flow> {
     static std::vector<LogColumn> columns(const Setting& setting);
   };
   struct Warnings {
-    static std::vector<std::string> of_input(const Setting&, const std::vector<Real>&) { return {}; }
+    static std::vector<std::string> of_input(const Setting& setting, const std::vector<Real>& times);
     static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,
                                              const std::vector<assembly::OutputField>& outputs);
   };
