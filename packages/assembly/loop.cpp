@@ -204,6 +204,11 @@ Stencil cell_stencil(const mesh::Mesh& mesh, Loop loop, const fields::Field& fie
     for (const LocalIndex facet : facets) table.add(facet * width);
     return {table.finish(), width};
   }
+  if (!on_cells && loop == Loop::facets) {
+    TableBuilder table(mesh.facets->n_owned, 1);
+    for (LocalIndex facet = 0; facet < mesh.facets->n_owned; ++facet) table.add(facet * width);
+    return {table.finish(), width};
+  }
   if (on_cells && loop == Loop::neighbours) {
     const auto pairs = neighbours(mesh);
     TableBuilder table(pairs.size(), 2);

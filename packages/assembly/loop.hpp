@@ -25,7 +25,8 @@ enum class Loop {
   neighbours,      ///< pairs of local cells with a common face that is not on a fracture
   junctions,       ///< pairs of edges at points of intersections in 3D; see mesh::for_each_pair()
   tip_cells,       ///< cells with a crack tip; see mesh::Mesh::tip
-  tip_sides        ///< fracture_sides whose cell has a crack tip
+  tip_sides,       ///< fracture_sides whose cell has a crack tip
+  facets           ///< owned facets
 };
 
 /// Returns the entities of Loop::fracture_sides: {fracture face, side}. Not collective.
@@ -78,6 +79,7 @@ class Writers {
 /// | fracture_cells            | -              | the fracture face, then its ridges                                |
 /// | neighbours                | both cells     | -                                                                 |
 /// | junctions                 | -              | both ridges                                                       |
+/// | facets                    | -              | the facet                                                         |
 ///
 /// A two-sided field has 2 dim components per face: side minus, then side plus. A field on enriched nodes is absent
 /// (first = -1) on nodes without enrichment, and in fracture_faces on faces without a tip. Operators read zero for

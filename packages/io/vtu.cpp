@@ -4,6 +4,7 @@
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "io/file.hpp"
+#include "mesh/facets.hpp"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -183,6 +184,19 @@ Piece intersection_piece(const std::vector<mesh::Intersection>& intersections) {
                                    static_cast<std::size_t>(*different.rbegin())};
     for (int i = 0; i < 4; ++i) piece.cell_data[i].values.push_back(static_cast<Real>(numbers[i]));
   }
+  return piece;
+}
+
+Piece edge_piece(const mesh::Mesh& mesh, const std::vector<mesh::IntersectionEdge>& edges) {
+  Piece piece;
+  piece.nodes_per_cell = 2;
+  piece.vtk_cell_type = VTK_LINE;
+  for (const auto& edge : edges)
+    for (const int k : {edge.ridge, edge.ridge + 1}) {
+      const auto x = mesh::face_corner(mesh, edge.face, k);
+      piece.connectivity.push_back(piece.n_points());
+      piece.points.insert(piece.points.end(), x.begin(), x.end());
+    }
   return piece;
 }
 

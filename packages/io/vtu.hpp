@@ -43,6 +43,9 @@ Piece fracture_piece(const mesh::Mesh& mesh);
 /// number of "faces" that end there, and the lowest and highest fracture number ("first fracture", "last fracture").
 Piece intersection_piece(const std::vector<mesh::Intersection>& intersections);
 
+/// Returns the edges as lines, without data.
+Piece edge_piece(const mesh::Mesh& mesh, const std::vector<mesh::IntersectionEdge>& edges);
+
 /// Returns some cells of a piece, with their points and cell data. The piece must have no point data.
 Piece part_of(const Piece& piece, const std::vector<LocalIndex>& cells);
 

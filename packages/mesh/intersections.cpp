@@ -129,6 +129,22 @@ std::vector<Intersection> intersections(const Mesh& mesh) {
   return result;
 }
 
+std::vector<IntersectionEdge> intersection_edges(const Mesh& mesh) {
+  const int n = n_face_corners(mesh.shape);
+  std::map<LocalIndex, IntersectionEdge> edges;
+  for (LocalIndex f = 0; f < mesh.n_fracture_faces() && mesh.dim() == 3; ++f)
+    for (int k = 0; k < n; ++k) {
+      const LocalIndex facet = mesh.facets->ridge[f * n + k];
+      if (facet >= mesh.facets->n_owned) continue;
+      auto& edge = edges.try_emplace(facet, IntersectionEdge{facet, f, k, {}}).first->second;
+      edge.fractures.push_back(mesh.fracture_faces[f].fracture);
+    }
+  std::vector<IntersectionEdge> result;
+  for (auto& [facet, edge] : edges)
+    if (do_meet(edge.fractures)) result.push_back(std::move(edge));
+  return result;
+}
+
 bool EdgeAtPoint::is_intersection() const { return is_intersection_of(fractures); }
 
 std::vector<std::vector<EdgeAtPoint>> junctions(const Mesh& mesh) {

@@ -21,6 +21,17 @@ struct Intersection {
 /// Numbers and order are independent of the number of ranks. Collective.
 std::vector<Intersection> intersections(const Mesh& mesh);
 
+/// Edge on an intersection in 3D: ridge of fracture faces.
+struct IntersectionEdge {
+  LocalIndex facet;            ///< see Facets
+  LocalIndex face = -1;        ///< one of its faces,
+  int ridge = -1;              ///< and the number of the ridge there
+  std::vector<int> fractures;  ///< fracture of each face at the edge, ascending
+};
+
+/// Returns the owned edges on intersections, ascending with their facets. Empty in 2D. Requires facets. Not collective.
+std::vector<IntersectionEdge> intersection_edges(const Mesh& mesh);
+
 /// Edge of fracture faces at one of its ends, in 3D.
 struct EdgeAtPoint {
   LocalIndex facet = -1;         ///< its ridge, see Facets

@@ -188,6 +188,7 @@ void Probes::add_output(const Probe& probe, const OutputField& output) {
   const bool on_fractures = output.entity == Entity::fracture_face;
   SPREKK_CHECK(!(probe.boundary || probe.region) || !on_fractures,
                "\"outputs\": \"{}\" is of fractures; give the \"fracture\"", output.name);
+  SPREKK_CHECK(output.entity != Entity::facet, "\"outputs\": \"{}\" is only in the files of ParaView", output.name);
   SPREKK_CHECK(!probe.fracture || on_fractures, "\"outputs\": \"{}\" is of the rock, not of a fracture", output.name);
   const bool integral = probe.is_extended() && probe.value == "integral";
   const auto unit =

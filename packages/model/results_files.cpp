@@ -2,6 +2,7 @@
 #include "base/over_ranks.hpp"
 #include "io/file.hpp"
 #include "io/json.hpp"
+#include "mesh/intersections.hpp"
 #include "model/events.hpp"
 #include "model/fracture_table.hpp"
 #include "model/json_keys.hpp"
@@ -45,6 +46,24 @@ std::vector<io::Block> blocks_of(const mesh::Mesh& mesh, const io::Piece& fractu
   for (std::size_t k = 0; k < faces.size(); ++k)
     blocks.push_back({mesh.fracture_names[k], io::part_of(fractures, faces[k])});
   return blocks;
+}
+
+/// Adds the owned edges on intersections if there are outputs on facets.
+void add_channels(const mesh::Mesh& mesh, const std::vector<OutputField>& outputs, std::vector<io::Block>& blocks) {
+  const auto on_facets = [](const OutputField& output) { return output.entity == fields::Entity::facet; };
+  if (std::none_of(outputs.begin(), outputs.end(), on_facets)) return;
+  const auto edges = mesh::intersection_edges(mesh);
+  auto piece = io::edge_piece(mesh, edges);
+  for (const auto& output : outputs) {
+    if (!on_facets(output)) continue;
+    std::vector<Real> values;
+    for (const auto& edge : edges) {
+      const auto first = output.values.begin() + static_cast<std::ptrdiff_t>(edge.facet) * output.n_components;
+      values.insert(values.end(), first, first + output.n_components);
+    }
+    piece.cell_data.push_back(io::data_array(output.name, output.n_components, std::move(values)));
+  }
+  blocks.push_back({"channels", std::move(piece)});
 }
 
 }  // namespace
@@ -109,7 +128,10 @@ void Results::write_fields(Real time, const std::vector<OutputField>& outputs) {
       bulk.cell_data.push_back(io::data_array(output.name, output.n_components, output.values));
   }
   bulk_->write(time, bulk);
-  if (fractures_) fractures_->write(time, blocks_of(mesh, fractures_with(mesh, outputs)));
+  if (!fractures_) return;
+  auto blocks = blocks_of(mesh, fractures_with(mesh, outputs));
+  add_channels(mesh, outputs, blocks);
+  fractures_->write(time, blocks);
 }
 
 void Results::write_json() {

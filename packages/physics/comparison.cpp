@@ -63,6 +63,8 @@ void Comparison::compare_regions() {
 void Comparison::compare_fractures() {
   if (scene_.fractures.count("intersections"))
     fail("Fractures > \"intersections\"", "is the name of intersections in result files; choose another name");
+  if (scene_.fractures.count("channels") && scene_.flow && !scene_.flow->intersections.empty())
+    fail("Fractures > \"channels\"", "is the name of channels in result files; choose another name");
   for (const auto& [name, fracture] : scene_.fractures)
     if (check_name("Fractures", fmt::format("Fractures > \"{}\"", name), name, names_.fractures))
       check_material("Fractures > " + name, fracture.material, "joint");

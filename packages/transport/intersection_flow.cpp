@@ -54,7 +54,7 @@ struct ChangedEdgeFlow {
 
 /// Module of an operator on the pairs of Loop::junctions, with the rows of one field on facets.
 template <class Op>
-class BetweenEdges final : public assembly::Module {
+class BetweenEdges : public assembly::Module {
  public:
   struct Description {
     std::string name, row;
@@ -87,15 +87,67 @@ class BetweenEdges final : public assembly::Module {
   }
   bool symmetric(const assembly::State&) const override { return description_.linear; }
 
- private:
+ protected:
   Description description_;
   Op op_;
   std::unique_ptr<assembly::Assembler<Op>> assembler_;
 };
 
-bool passes(const Channel& channel, const mesh::EdgeAtPoint& edge) {
-  return edge.is_intersection() && std::includes(edge.fractures.begin(), edge.fractures.end(),
-                                                 channel.fractures.begin(), channel.fractures.end());
+/// Flow between edges, with the flow along them as output.
+template <class Op>
+class FlowBetweenEdges final : public BetweenEdges<Op> {
+ public:
+  using BetweenEdges<Op>::BetweenEdges;
+
+  assembly::Declaration declare(const mesh::Mesh& mesh) const override {
+    auto d = BetweenEdges<Op>::declare(mesh);
+    d.outputs = {{{"channel flow", "m^3/s", fields::Entity::facet, 3},
+                  [this](const assembly::State& state) { return along_edges(state); }}};
+    return d;
+  }
+  void bind(const assembly::Context& context) override {
+    BetweenEdges<Op>::bind(context);
+    n_owned_ = context.mesh()->facets->n_owned;
+    for (const auto& edges : mesh::junctions(*context.mesh()))
+      mesh::for_each_pair(edges, [&](const auto& a, const auto& b) {
+        ends_.push_back({End{a.facet, half_unit(a.to_point)}, End{b.facet, half_unit(b.to_point)}});
+      });
+  }
+
+  /// Returns the flow along owned edges, [facet, direction].
+  std::vector<Real> along_edges(const assembly::State& state) const {
+    const View<Real*> flows("flows", ends_.size());
+    const auto op = this->op_;
+    this->assembler_->for_each(
+        op, state, KOKKOS_LAMBDA(int e, const Real(&x)[Op::Columns::size]) {
+          Real q[1];
+          op.flow(e, x, q);
+          flows(e) = q[0];
+        });
+    const auto q = base::to_host(flows);
+    std::vector<Real> values(3 * static_cast<std::size_t>(n_owned_), 0);
+    for (std::size_t e = 0; e < ends_.size(); ++e)
+      for (const int k : {0, 1})
+        if (const auto& end = ends_[e][k]; end.facet < n_owned_)
+          for (int c = 0; c < 3; ++c) values[3 * end.facet + c] += (k == 0 ? q(e) : -q(e)) * end.half[c];
+    return values;
+  }
+
+ private:
+  struct End {
+    LocalIndex facet;
+    mesh::Vector half;  // unit vector from the edge to its end, divided by 2
+  };
+
+  static mesh::Vector half_unit(const mesh::Vector& along) { return (0.5 / mesh::norm(along)) * along; }
+
+  std::vector<std::array<End, 2>> ends_;  // [pair]
+  LocalIndex n_owned_ = 0;
+};
+
+/// Returns whether a channel is in an intersection of these fractures.
+bool passes(const Channel& channel, const std::vector<int>& fractures) {
+  return std::includes(fractures.begin(), fractures.end(), channel.fractures.begin(), channel.fractures.end());
 }
 
 /// [facet] 1: border of a fracture with a prescribed pressure. Collective.
@@ -139,7 +191,7 @@ class Point {
   Real to_point(const mesh::EdgeAtPoint& edge) const {
     Real C = 0;
     for (const auto& channel : channels_)
-      if (passes(channel, edge)) C += channel.conductance;
+      if (edge.is_intersection() && passes(channel, edge.fractures)) C += channel.conductance;
     return C / mesh::norm(edge.to_point);
   }
 
@@ -185,17 +237,32 @@ auto with_fluid(const mesh::Mesh& mesh, const IntersectionFlowParameters& parame
 
 Real length_of(const Channel& channel, const mesh::Mesh& mesh) {
   Real length = 0;
-  for (const auto& edges : mesh::junctions(mesh))
-    for (const auto& edge : edges)
-      if (edge.facet < mesh.facets->n_owned && passes(channel, edge)) length += mesh::norm(edge.to_point);
+  for (const auto& edge : mesh::intersection_edges(mesh))
+    if (passes(channel, edge.fractures)) length += mesh::ridge_length(mesh, edge.face, edge.ridge);
   return base::sum_over_ranks(*mesh.comm, length);
+}
+
+std::vector<EdgeCapacity> stored_in(const std::vector<Channel>& channels, const Capacity& of_fluid,
+                                    const mesh::Mesh& mesh) {
+  std::vector<EdgeCapacity> all;
+  for (const auto& edge : mesh::intersection_edges(mesh)) {
+    Real area = 0;
+    for (const auto& channel : channels)
+      if (passes(channel, edge.fractures)) area += channel.area;
+    if (area > 0)
+      all.push_back({.facet = edge.facet,
+                     .length = mesh::ridge_length(mesh, edge.face, edge.ridge),
+                     .capacity = {.room = area * of_fluid.room, .growth = area * of_fluid.growth},
+                     .centre = mesh::ridge_centre(mesh, edge.face, edge.ridge)});
+  }
+  return all;
 }
 
 std::unique_ptr<assembly::Module> make_intersection_flow(const mesh::Mesh& mesh,
                                                          const IntersectionFlowParameters& parameters) {
   return with_fluid(mesh, parameters, [&]<class Op>(const Op& op) -> std::unique_ptr<assembly::Module> {
     const bool linear = parameters.fluid.compressibility == 0 && !parameters.change;
-    return std::make_unique<BetweenEdges<Op>>(
+    return std::make_unique<FlowBetweenEdges<Op>>(
         typename BetweenEdges<Op>::Description{"intersection flow", "face pressure", drivers(parameters), linear,
                                                false},
         op);

@@ -3,6 +3,7 @@
 #include "assembly/assembler.hpp"
 #include "assembly/capabilities.hpp"
 #include "base/host_table.hpp"
+#include "mesh/facets.hpp"
 #include "transport/changed_flow.hpp"
 
 #include <algorithm>
@@ -276,6 +277,21 @@ std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters) {
   };
   return module_of<StorageCell>(parameters.name, parameters.field, parameters.field, fields::Entity::cell, Loop::cells,
                                 "", parameters.change, parameters.fluid, find);
+}
+
+std::unique_ptr<assembly::Module> make_edge_storage(StorageParameters parameters, std::vector<EdgeCapacity> edges) {
+  const auto find = [parameters, edges = std::move(edges)](const mesh::Mesh& mesh) {
+    std::vector<Stored> stored(mesh.facets->n_owned, Stored{.volume = 0, .capacity = {0, 0}, .initial = 0});
+    for (const auto& edge : edges)
+      stored[edge.facet] = {.volume = edge.length,
+                            .capacity = edge.capacity,
+                            .initial = parameters.initial(edge.centre, 0),
+                            .carried = parameters.change ? parameters.change->initial(edge.centre, 0) : 0};
+    return stored;
+  };
+  return module_of<StorageCell>("edge storage of " + parameters.field, "face " + parameters.field, parameters.field,
+                                fields::Entity::facet, Loop::facets, "face ", parameters.change, parameters.fluid,
+                                find);
 }
 
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters) {

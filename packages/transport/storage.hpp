@@ -7,6 +7,7 @@
 #include "laws/fluid.hpp"
 #include "transport/fluid_change.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,7 +23,7 @@ struct Capacity {
 };
 
 struct StorageParameters {
-  std::string name;                            ///< name of the module
+  std::string name = {};                       ///< name of the module
   std::string field;                           ///< u, on cells
   fields::Properties<Capacity> capacity = {};  ///< of cells
   laws::Fluid fluid = {};                      ///< energy: the default, with density 1
@@ -47,5 +48,17 @@ struct FractureStorageParameters {
 /// Adds storage to the rows of "face pressure" on fracture faces. The face area replaces V, and the aperture replaces
 /// the porosity.
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters);
+
+/// Storage per length of an edge of fracture faces.
+struct EdgeCapacity {
+  LocalIndex facet;   ///< ridge of the edge
+  Real length;        ///< m
+  Capacity capacity;  ///< with the cross-sectional area, m^2, instead of the porosity
+  std::array<Real, 3> centre;
+};
+
+/// Adds storage to the rows of "face FIELD" on these ridges. `name` and `capacity` of the parameters are not used, and
+/// `edges` may be empty on some ranks.
+std::unique_ptr<assembly::Module> make_edge_storage(StorageParameters parameters, std::vector<EdgeCapacity> edges);
 
 }  // namespace sprekk::transport

@@ -61,7 +61,7 @@ class FlowJacobian : public ::testing::TestWithParam<std::string> {};
 TEST_P(FlowJacobian, OfEveryModuleIsItsDerivative) {
   model::Model model(make_scene(GetParam()), Tpetra::getDefaultComm());
   auto& system = model.system();
-  const std::size_t n_modules = model.mesh().dim() == 3 ? 6 : 5;
+  const std::size_t n_modules = model.mesh().dim() == 3 ? 7 : 5;
   ASSERT_EQ(system.modules().size(), n_modules);
   system.set_time(1, 0.5);
   auto x = system.initial();

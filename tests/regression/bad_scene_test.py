@@ -260,6 +260,8 @@ class Scenes(BadInput):
         refuse(['shaft > "fractures": has "bedding" twice'], pipes, shaft + "fractures={bedding, bedding}")
         refuse(['shaft: give either "diameter" or "permeability times area"'], pipes, shaft + "permeability times area=1e-9")
         refuse(['shaft > "diameter": is 0, must be'], pipes, shaft + "diameter=0")
+        (self.folder / "named.xml").write_text(self.scene(pipes).read_text().replace("bedding", "channels"))
+        self.refuse(['Fractures > "channels": is the name of channels'], "check", "named.xml")
         refuse(["Flow > Intersections > shaft: needs a mesh in 3D"], "flow/network_2d.xml", shaft + "diameter=0.02")
         refuse(['not available with "Flow > Intersections"'], pipes, "Output.error estimate=true")
 

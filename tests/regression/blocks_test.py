@@ -72,6 +72,29 @@ class Blocks(ProgramTest):
             self.assertAlmostEqual(sum(np.linalg.norm(points[cell[1]] - points[cell[0]]) for cell in cells), 1 + 0.75 + 0.5, 9)
             self.assertEqual(set(read.arrays(lines.GetCellData())["faces"]), {4})
 
+    def test_of_channels(self):
+        """Flow along the channels; there is none in the intersection of the east joint and the bedding."""
+        found = []
+        for ranks in (1, 2):
+            self.run_scene("flow/channels_3d.xml", ranks=ranks, output=f"out{ranks}")
+            blocks, _ = self.blocks(f"out{ranks}")
+            channels = blocks["channels"]
+            flow = read.arrays(channels.GetCellData())["channel flow"]
+            points = vtk_to_numpy(channels.GetPoints().GetData())
+            centres = np.array([points[cell].mean(axis=0) for cell in read.cells(channels.GetCells())])
+            order = np.lexsort(np.round(centres, 6).T)
+            found.append((centres[order], flow[order]))
+            self.assertEqual(len(flow), blocks["intersections"].GetNumberOfCells())
+        (centres, flow), (other_centres, other_flow) = found
+        largest = np.abs(flow).max()
+        self.assertLess(np.abs(centres - other_centres).max(), 1e-9)
+        self.assertLess(np.abs(flow - other_flow).max(), 1e-6 * largest)
+        without = (np.abs(centres[:, 0] - 70) < 1e-6) & (np.abs(centres[:, 1] - 50) > 1)
+        shaft = (np.abs(centres[:, 0] - 70) < 1e-6) & (np.abs(centres[:, 1] - 50) < 1e-6)
+        self.assertEqual(np.abs(flow[without]).max(), 0)
+        self.assertTrue((flow[shaft][:, 2] < 0).all())  # down
+        self.assertEqual(np.abs(flow[shaft][:, :2]).max(), 0)
+
     def test_of_one_fracture(self):
         self.run_scene("seed/push_3d.xml")
         self.assertEqual(list(self.blocks()[0]), ["fracture"])

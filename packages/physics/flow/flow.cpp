@@ -52,7 +52,9 @@ std::vector<transport::Well> wells_in(const Scene& scene, int dim) {
 }
 
 transport::Channel channel_of(const IntersectionSection& section, const Scene& scene, const mesh::Mesh& mesh) {
-  transport::Channel channel{.conductance = section.conductance(scene.flow->viscosity)};
+  const Real permeability_area = section.conductance(1);
+  transport::Channel channel{.conductance = permeability_area / scene.flow->viscosity,
+                             .area = std::sqrt(8 * M_PI * permeability_area)};
   for (const auto& name : section.fractures) channel.fractures.push_back(base::index_of(mesh.fracture_names, name));
   std::sort(channel.fractures.begin(), channel.fractures.end());
   return channel;
@@ -137,7 +139,7 @@ transport::IntersectionFlowParameters intersection_flow(const Setting& setting,
   return parameters;
 }
 
-/// Adds the flow in channels, and the transport by it. Collective.
+/// Adds flow and storage of the fluid in channels, and the transport by this flow. Collective.
 void add_intersections(const Setting& setting, const transport::HybridDiffusionParameters& darcy,
                        const std::vector<CarriedQuantity>& all_carried, Modules& modules) {
   if (setting.scene.flow->intersections.empty()) return;
@@ -145,6 +147,13 @@ void add_intersections(const Setting& setting, const transport::HybridDiffusionP
   modules.push_back(transport::make_intersection_flow(setting.mesh, parameters));
   for (const auto& carried : all_carried)
     modules.push_back(transport::make_intersection_advection(setting.mesh, parameters, carried));
+  if (darcy.fluid.compressibility > 0 || darcy.change)
+    add_storage_in_channels(setting,
+                            {.field = "pressure",
+                             .fluid = darcy.fluid,
+                             .initial = setting.scene.flow->initial_pressure,
+                             .change = darcy.change},
+                            {1, 0}, modules);
 }
 
 /// Storage capacities of the pores in local cells. Collective.
@@ -231,6 +240,16 @@ fields::Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh
   return by_cell(
       scene, mesh, [](const Material& rock) { return rock.flows_uniformly(); },
       [&](const Material& rock, const auto& x) { return rock.mobility(mesh.dim(), scene.flow->viscosity, x); });
+}
+
+void add_storage_in_channels(const Setting& setting, const transport::StorageParameters& parameters,
+                             const transport::Capacity& of_fluid, Modules& modules) {
+  const auto& [scene, mesh, start] = setting;
+  std::vector<transport::Channel> channels;
+  if (scene.flow)
+    for (const auto& [name, one] : scene.flow->intersections) channels.push_back(channel_of(one, scene, mesh));
+  if (channels.empty()) return;
+  modules.push_back(transport::make_edge_storage(parameters, transport::stored_in(channels, of_fluid, mesh)));
 }
 
 transport::SchemeEntry scheme_entry(const Scene& scene) {

@@ -172,6 +172,10 @@ std::vector<StartAperture> start_apertures(const Setting& setting);
 
 /// Entry "scheme" of the flow section.
 transport::SchemeEntry scheme_entry(const Scene& scene);
+
+/// Adds storage in the channels along intersections, if there are any: `of_fluid` per volume of fluid.
+void add_storage_in_channels(const Setting& setting, const transport::StorageParameters& parameters,
+                             const transport::Capacity& of_fluid, Modules& modules);
 /// Mobilities of local cells.
 fields::Properties<laws::Mobility> mobility(const Scene& scene, const mesh::Mesh& mesh);
 

@@ -399,6 +399,8 @@ void Heat::add_modules(const Setting& setting, Modules& modules) {
                                              .capacity = std::move(capacity),
                                              .initial = heat.initial_temperature.value_or(0)}));
   if (!mesh.fracture_names.empty()) add_fractures(setting, faces, chosen.scheme, modules);
+  add_storage_in_channels(setting, {.field = "temperature", .initial = heat.initial_temperature.value_or(0)},
+                          {0, heat.fluid_capacity.value_or(0)}, modules);
   add_expansion(setting, std::move(given), modules);
 }
 

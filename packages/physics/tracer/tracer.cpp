@@ -268,6 +268,8 @@ void Tracer::add_modules(const Setting& setting, Modules& modules) {
                                              .initial = tracer.initial_concentration}));
   modules.push_back(make_rock_tracer(capacity_of_cells(setting, mesh.n_cells()), tracer.decay()));
   add_dispersion(setting, modules);
+  add_storage_in_channels(setting, {.field = "concentration", .initial = tracer.initial_concentration}, {0, 1},
+                          modules);
   if (faces.empty() && mesh.fracture_names.empty()) return;
   FractureTracerParameters fractures{.faces = faces,
                                      .scheme = chosen.scheme,

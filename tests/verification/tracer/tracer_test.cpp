@@ -321,11 +321,40 @@ TEST(Tracer, MixesWhereChannelsMeet) {
     hold_concentration(scene, "west", "0");
     hold_concentration(scene, "top", "0");
     model::Model model(scene, Tpetra::getDefaultComm());
-    ASSERT_TRUE(model.step_to(1).converged) << cell;
+    ASSERT_TRUE(model.step_to(1e10).converged) << cell;  // the steady state
     const Real meeting = (10 + 4 * 0.8) / 24, from_below = 10 * (1 - meeting);
     EXPECT_NEAR(inflow(model, "bottom"), from_below, 1e-8) << cell;
     EXPECT_NEAR(inflow(model, "top has tracer"), -from_below, 1e-8) << cell;
     EXPECT_NEAR(inflow(model, "bottom has tracer"), 0, 1e-8) << cell;
+  }
+}
+
+/// Tracer enters a channel without tracer from the bottom at the rate q, with the concentration 1, and leaves at the
+/// top. `tracer_inflows` there contain -q c. An edge multiplies c by 2/3 in the first step. In the end, the tracer
+/// fills the volume A of a circular pipe of length 1.
+TEST(Tracer, FillsAChannel) {
+  constexpr Real K = 10, q = K / viscosity;
+  const Real volume = std::sqrt(8 * M_PI * K), dt = volume / q / 2;
+  for (const std::string cell : {"tetrahedron", "hexahedron"}) {
+    auto scene = closed_box(cell);
+    scene.materials.at("rock").permeability = {Expression(1e-15)};
+    scene.materials.at("joint").normal_permeability = Expression(1e-15);
+    scene.materials.at("joint").tangential_permeability = Expression(1e-9);
+    dissolve(scene, 0, 1e-15, 0.1, 1);
+    scene.flow->intersections["pipe"].permeability_area = K;
+    constrain(scene, "bottom", "1");
+    constrain(scene, "top", "0");
+    hold_concentration(scene, "bottom", "1");
+    hold_concentration(scene, "top", "0");
+    model::Model model(scene, Tpetra::getDefaultComm());
+    Real stored = 0;
+    for (int step = 1; step <= 40; ++step) {
+      ASSERT_TRUE(model.step_to(step * dt).converged) << cell;
+      stored += dt * (q + inflow(model, "top has tracer"));
+      if (step > 1) continue;
+      EXPECT_NEAR(inflow(model, "top has tracer") / q, -std::pow(2.0 / 3, 4), 1e-6) << cell;  // four edges in a row
+    }
+    EXPECT_NEAR(stored / volume, 1, 1e-6) << cell;
   }
 }
 
