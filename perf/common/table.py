@@ -10,7 +10,7 @@ def line(values, columns, width, minimum=7):
     """Line of a table with right-aligned numbers; `columns` are {name: format}, the first is `width` wide."""
     words = ["-" if value is None else value if isinstance(value, str) else format(value, how)
              for value, how in zip(values, columns.values())]
-    numbers = (f"{word:>{max(minimum, len(name) + 2)}}" for name, word in zip(list(columns)[1:], words[1:]))
+    numbers = (f"  {word:>{max(minimum, len(name) + 2) - 2}}" for name, word in zip(list(columns)[1:], words[1:]))
     return f"{words[0]:{width}}" + "".join(numbers)
 
 
