@@ -22,11 +22,14 @@ def injected(times, rates, start=0.0):
 def panels(steps, singles, start=0.0, dim=3):
     """Yields (label, unit, {name: values over the steps}) of a run; `singles`: names of single fractures."""
     times = np.array([step["time"] for step in steps])
+    base_of_volume = "m²" if dim == 2 else "m³"  # volume per depth in 2D
     for key, label, base in (
         ("max_slip", "largest slip", "m"),
         ("mean_opening", "mean opening", "m"),
         ("mean_fracture_pressure", "mean pressure in fractures", "Pa"),
         ("mean_fracture_temperature", "mean temperature of fractures", "K"),
+        ("area_broken", *(("broken length", "m") if dim == 2 else ("broken area", "m²"))),
+        ("leaked_volume", "leaked volume", base_of_volume),
     ):
         if singles and all(key in step.get("single_fractures", {}) for step in steps):
             values = np.array([step["single_fractures"][key] for step in steps], dtype=float)
@@ -44,8 +47,7 @@ def panels(steps, singles, start=0.0, dim=3):
 
     if wells:
         yield "pressure in wells", "Pa", of_wells("pressure")
-        base = "m²" if dim == 2 else "m³"  # volume per depth in 2D
-        yield "injected volume", base, {n: injected(times, v, start) for n, v in of_wells("rate").items()}
+        yield "injected volume", base_of_volume, {n: injected(times, v, start) for n, v in of_wells("rate").items()}
         if any("temperature" in well for well in steps[-1]["wells"].values()):
             yield "temperature in wells", "K", of_wells("temperature")
 

@@ -114,12 +114,13 @@ def fluid(steps, dim):
         unit = RATES[kind][dim == 2]
         through = sum(np.sum(value) for value in last.get(key, {}).values())
         by_wells = sum(through_wells)
+        leak_off = " and leak-off" if "leak-off" in last.get(key, {}) else ""
         total = through + by_wells
         carried = kind == "heat" and ("inflows" in last or through_wells)  # flux at boundaries is unknown here
         yield Check(
             f"balance of {kind}",
             "noted",
-            f"inflow at the end: {quantity(through)} {unit} through boundaries"
+            f"inflow at the end: {quantity(through)} {unit} through boundaries{leak_off}"
             + (" in addition to the heat of the fluid at their temperatures" if carried else "")
             + f" and {quantity(by_wells)} {unit} through wells"
             + ("" if carried else f"; the sum, {quantity(total)} {unit}, is {'stored' if total >= 0 else 'released from storage'}"),

@@ -20,11 +20,20 @@ OF_FRACTURES = [
     ("max_opening", "largest opening", "m"),
     ("slip_tendency", "slip tendency", ""),
     ("max_fracture_pressure", "largest pressure", "Pa"),
+    ("area_broken", "broken area", "m²"),
+    ("fracture_energy", "fracture energy", "J"),
+    ("leaked_volume", "leaked volume", "m³"),
     ("moment", "moment", "N m"),
     ("moment_magnitude", "moment magnitude", ""),
 ]
 CHANGES = ("max_slip", "first_slip", "fraction_has_slipped", "fraction_open")  # fractures without them have no row
-OF_PLANE = {"area": ("length", "m"), "moment": ("moment per depth", "N")}  # titles and units in 2D
+OF_PLANE = {  # titles and units in 2D
+    "area": ("length", "m"),
+    "area_broken": ("broken length", "m"),
+    "fracture_energy": ("fracture energy per depth", "J/m"),
+    "leaked_volume": ("leaked volume per depth", "m²"),
+    "moment": ("moment per depth", "N"),
+}
 
 
 def column(title, values, base, end=None):

@@ -16,8 +16,8 @@ namespace {
 
 /// Unit factor 10^ten m^a kg^b s^c rad^d K^e with the powers a, b, c, d, e.
 struct Unit {
-  std::array<int, 5> powers;
-  int ten;
+  std::array<Real, 5> powers;
+  Real ten;
   Real factor;
 };
 
@@ -31,7 +31,7 @@ constexpr Real degree = 3.14159265358979323846 / 180, day = 86400;
 constexpr Unit length{{1, 0, 0, 0, 0}, 0, 1}, mass{{0, 1, 0, 0, 0}, 0, 1}, force{{1, 1, -2, 0, 0}, 0, 1};
 constexpr Unit time_in(Real seconds) { return {{0, 0, 1, 0, 0}, 0, seconds}; }
 constexpr Unit angle_in(Real radians) { return {{0, 0, 0, 1, 0}, 0, radians}; }
-constexpr Unit pressure_in(int ten) { return {{-1, 1, -2, 0, 0}, ten, 1}; }
+constexpr Unit pressure_in(Real ten) { return {{-1, 1, -2, 0, 0}, ten, 1}; }
 
 constexpr Real foot = 0.3048, inch = foot / 12, darcy = 9.869232667160128e-13;  // 1 cP cm^2/s/atm
 constexpr Real psi = 4.4482216152605 / (inch * inch);                           // pound-force per square inch
@@ -111,7 +111,8 @@ constexpr std::array<std::string_view, 3> celsius{"\u00b0C", "degC", "\u2103"};
 
 bool is_celsius(std::string_view name) { return std::find(celsius.begin(), celsius.end(), name) != celsius.end(); }
 
-/// Replaces superscripts and dots by ASCII: "kg/m\u00b3" -> "kg/m^3", "Pa\u00b7s" and "Pa.s" -> "Pa*s".
+/// Replaces superscripts and dots by ASCII: "kg/m\u00b3" -> "kg/m^3", "Pa\u00b7s" and "Pa.s" -> "Pa*s". The dot of the
+/// power 0.5 remains.
 std::string plain(std::string text) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> written{{{"\u207b\u00b9", "^-1"},
                                                                                   {"\u207b\u00b2", "^-2"},
@@ -122,7 +123,8 @@ std::string plain(std::string text) {
   for (const auto& [from, to] : written)
     for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);
-  std::replace(text.begin(), text.end(), '.', '*');
+  for (auto at = text.find('.'); at != text.npos; at = text.find('.', at + 1))
+    if (text.compare(at + 1, 1, "5") != 0) text[at] = '*';
   return text;
 }
 
@@ -157,7 +159,7 @@ Unit unit_called(const std::string& name) {
 }
 
 /// Returns a b^power.
-Unit product(Unit a, const Unit& b, int power) {
+Unit product(Unit a, const Unit& b, Real power) {
   for (std::size_t i = 0; i < a.powers.size(); ++i) a.powers[i] += power * b.powers[i];
   a.ten += power * b.ten;
   a.factor *= std::pow(b.factor, power);
@@ -210,11 +212,16 @@ class UnitParser {
     return unit_called(text_.substr(begin, at_ - begin));
   }
 
-  int exponent() {
+  Real exponent() {
     const bool has_digit = at_ < text_.size() && text_[at_] >= '1' && text_[at_] <= '9';  // "m3"
     const bool is_power = !has_digit && take('^');
     if (!has_digit && !is_power) return 1;
     const int sign = is_power && take('-') ? -1 : 1;
+    constexpr std::string_view half = "0.5";
+    if (is_power && text_.compare(at_, half.size(), half) == 0) {
+      at_ += half.size();
+      return sign * 0.5;
+    }
     if (at_ == text_.size() || text_[at_] < '1' || text_[at_] > '9') fail();
     return sign * (text_[at_++] - '0');
   }
@@ -307,7 +314,8 @@ Real value_in(const std::string& unit, const Quantity& quantity) {
   SPREKK_CHECK(from.powers == to.powers, "has the unit \"{}\"; allowed are {} and other units of the same quantity{}",
                quantity.unit, quoted_list(offers(unit)),
                has_tonne(quantity.unit) ? fmt::format("; t is the tonne here: {}", no_units_in_expressions) : "");
-  return shifted(quantity.value, from.ten - to.ten) * (from.factor / to.factor);
+  const Real ten = from.ten - to.ten, whole = std::floor(ten);
+  return shifted(quantity.value, static_cast<int>(whole)) * (std::pow(10, ten - whole) * from.factor / to.factor);
 }
 
 }  // namespace sprekk::base

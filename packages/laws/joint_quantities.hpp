@@ -12,7 +12,7 @@ namespace sprekk::laws {
 
 /// Declaration of an output quantity; see Quantity.
 struct JointQuantity {
-  std::string name, unit, meaning, error_of;
+  std::string name, unit, meaning, error_of, integral;
 };
 
 /// Value on a face from the contact at the end of a step, with all history variables of the joint.
@@ -41,7 +41,7 @@ inline std::vector<JointQuantity> joint_quantities() {
   const auto add = [&](const auto& quantities) {
     for (const auto& one : quantities)
       if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.name == one.name; }))
-        all.push_back({one.name, one.unit, one.meaning, one.error_of});
+        all.push_back({one.name, one.unit, one.meaning, one.error_of, one.integral});
   };
   const auto add_all = [&]<class... Ks>(const Kinds<Ks...>&) { (add(quantities_of<Ks>()), ...); };
   add_all(DilationKinds());

@@ -48,6 +48,7 @@ struct Quantity {
   std::string name, unit, meaning;
   Real (*value)(const K&, const Contact<Real>&);
   std::string error_of = {};  ///< name of the quantity whose relative error it bounds; may be empty
+  std::string integral = {};  ///< name of its integral over a fracture, in place of mean and maximum; may be empty
 };
 
 /// Output "accumulated slip" of a law whose first history variable is the path length of slip.

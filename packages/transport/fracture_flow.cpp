@@ -48,7 +48,13 @@ class FractureFlow final : public assembly::Module,
         {{"fluid flux", "m^2/s", fields::Entity::fracture_face, 3, {Summary::mean, "fluid flux", "global"}},
          [this](const auto& state) { return fluxes(state); }},
         {{"hydraulic aperture", "m", fields::Entity::fracture_face, 1, {Summary::mean_and_max, "hydraulic aperture"}},
-         [this](const auto& state) { return apertures(state); }}};
+         [this](const auto& state) { return apertures(state); }},
+        {{"fluid volume",
+          "m",
+          fields::Entity::fracture_face,
+          1,
+          {Summary::integral, "fluid volume", "", {}, dim == 2 ? "m^2" : "m^3"}},
+         [this](const auto& state) { return volumes(state); }}};
     d.linear = is_linear();
     return d;
   }
@@ -177,15 +183,23 @@ class FractureFlow final : public assembly::Module,
     return values;
   }
 
-  std::vector<Real> apertures(const assembly::State& state) const {
+  /// Values of(conduit, widening), [owned face].
+  template <class Of>
+  std::vector<Real> of_conduits(const assembly::State& state, const Of& of) const {
     View<Real*>::HostMirror widening("widening", mesh_->n_fracture_faces());
     if (widens_) Kokkos::deep_copy(widening, state.x[widening_]);
     std::vector<Real> values;
-    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
-      const auto& along = parameters_.faces[f].along;
-      values.push_back(along.is_sealed(widening(f)) ? 0 : along.hydraulic_aperture(widening(f)));
-    }
+    for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f)
+      values.push_back(of(parameters_.faces[f].along, widening(f)));
     return values;
+  }
+  std::vector<Real> apertures(const assembly::State& state) const {
+    return of_conduits(state, [](const auto& along, Real widening) {
+      return along.is_sealed(widening) ? 0 : along.hydraulic_aperture(widening);
+    });
+  }
+  std::vector<Real> volumes(const assembly::State& state) const {
+    return of_conduits(state, [](const auto& along, Real widening) { return along.mechanical_aperture(widening); });
   }
 
   std::vector<Real> fluxes(const assembly::State& state) const {

@@ -24,7 +24,8 @@ struct FractureFlowParameters {
   /// Hydraulic data of one fracture face.
   struct Face {
     laws::Conduit along;
-    Real exchange;  ///< per side, 2 k_n/(a mu), m/(Pa s); infinite: no resistance
+    Real exchange;      ///< per side, 2 k_n/(a mu), m/(Pa s); infinite: no resistance
+    Real leak_off = 0;  ///< coefficient of each side, m/s^0.5; see make_leak_off()
   };
   std::vector<Face> faces = {};               ///< [local fracture face]
   std::vector<std::vector<int>> cut_by = {};  ///< [fracture] fractures whose filling divides it; empty with widening
@@ -54,7 +55,7 @@ struct FractureFlowParameters {
 /// 1/(exchange of the cutting fracture x aperture of F x length of the ridge) to T.
 ///
 /// Outputs: "fracture pressure" p_F, "hydraulic aperture", and "fluid flux" sum_i q_i d_i / (A e_F), the Darcy velocity
-/// times the aperture (faces, m^2/s, global components).
+/// times the aperture (faces, m^2/s, global components). Integral "fluid volume" of the mechanical aperture.
 std::unique_ptr<assembly::Module> make_fracture_flow(mesh::Shape shape, FractureFlowParameters parameters);
 
 }  // namespace sprekk::transport

@@ -1,10 +1,11 @@
 """Fractures driven by a fluid: errors against similarity solutions between viscosity and toughness.
 
 Rows in plane strain are the growth of half of a fracture at one dimensionless toughness Kd, on a mesh with a number of
-faces along the wing at the end. Strength and residual aperture follow from the opening near the tip, see README.md. The
-last rows are a quarter of a circular fracture in 3D, filled with a nearly inviscid fluid. Errors compare with the solution
-for the same volume at the end. The last line gives the number of failed runs, the largest error of length or radius on
-the finest meshes, the median of the Newton iterations of all steps, and the number of meshes after the first."""
+faces along the wing at the end. Strength and residual aperture follow from the opening near the tip, see README.md. Rows
+of leak-off lose most of a nearly inviscid fluid. The last rows are a quarter of a circular fracture in 3D, filled with such
+a fluid. Errors compare with the solution for the same volume at the end; with leak-off, at the same time.
+The last line gives the number of failed runs, the largest error of length or radius on the finest meshes, the median of the
+Newton iterations of all steps, and the number of meshes after the first."""
 import math
 from functools import partial
 
@@ -28,6 +29,7 @@ SOFTENED = 0.733  # opening at the end of the zone over that of the sharp tip at
 OPENED = 0.5   # residual aperture over the opening at one face behind the tip
 STEPS = {1: 0.0, 4: 0.6}  # per face: from this part of the final length
 FAR = 12       # half-width of the body over the length
+REACH = 10     # of exact.Leaking
 LAG = 0.135    # of the broken length behind a sharp tip over 0.8 E' G/T^2, without viscosity
 RADIUS, CIRCLE = 10.0, (6, 8)  # of the circular fracture, m, and its faces along a radius
 
@@ -44,13 +46,13 @@ def scene_of(fracture, faces, file):
     strength = 2 * ENERGY / (SOFTENED * fracture.tip_opening(ZONE * size))
     meshes.write(file.with_suffix(".msh"), meshes.graded(size, 1.1 * LENGTH, FAR * LENGTH, 1.4), meshes.graded(size, 2 * size, FAR * LENGTH, 1.4))
     fronts = [x for x in np.arange(notch, LENGTH + size / 8, size / max(STEPS)) if is_step((x - notch) / size, x / LENGTH)]
-    times = END * (np.array(fronts) / LENGTH) ** 1.5
+    times = [fracture.time(front) for front in fronts]
     scene_file.save({
         "Mesh file": {"path": file.with_suffix(".msh").name, "fractures": {"growing": {}}}, "Bulk": {"material": "granite"},
         "Materials": rock(strength, ENERGY, **{"residual aperture": OPENED * fracture.tip_opening(size)}),
         "Flow": {"viscosity": fracture.viscosity / 12, "compressibility": 1e-11,
                  "Wells": {"injector": {"points": [size / 2, 0.0], "radius": size / 5, "rate": fracture.rate / 2}}},
-        "Fractures": {"growing": {"material": "bonded joint", "unbroken": f"x > {notch}"}},
+        "Fractures": {"growing": {"material": "bonded joint", "unbroken": f"x > {notch}", "leak-off coefficient": fracture.leak_off}},
         "Boundary conditions": {
             **{name: {"boundary": name, "displacement": [0.0, "free"]} for name in ("west upper", "west lower", "east")},
             "south": {"boundary": "south", "displacement": ["free", 0.0]}},
@@ -87,6 +89,17 @@ def plane(options, toughness, faces):
     return Row(f"plane strain, Kd = {toughness}", faces, strength, run, errors(computed, fracture.at(2 * volume(last) / fracture.rate)))
 
 
+def leaking(options, faces):
+    """A tenth of the fluid is in the fracture at the end. The errors include those of the start from the notch."""
+    fracture = exact.Leaking(REACH, PLANE, ENERGY, LENGTH, END)
+    file = options.output / f"leak_off_{faces}.xml"
+    strength, notch = scene_of(fracture, faces, file)
+    run = program.succeeded(options.binary, file, file.with_suffix(""), options.set)
+    fields = run.steps[-1]["fractures"]["growing"]
+    return Row("plane strain, leak-off", faces, strength, run,
+               errors((notch + fields["area_broken"] + LAG * zone_of(strength, ENERGY), fields["max_opening"], fields["max_fracture_pressure"]), fracture.at(END)))
+
+
 def circle(options, faces):
     """Quarter of a circular fracture. The radius is that of the broken area plus the lag of the zone."""
     K, size = math.sqrt(ENERGY * PLANE), RADIUS / faces
@@ -106,6 +119,8 @@ def cases(options):
     for toughness in (1,) if options.quick else exact.VALUES:
         for faces in (20,) if options.quick else FACES:
             yield f"plane strain, Kd = {toughness}, {faces} faces", partial(plane, options, toughness, faces)
+    for faces in () if options.quick else FACES:
+        yield f"plane strain, leak-off, {faces} faces", partial(leaking, options, faces)
     for faces in () if options.quick else CIRCLE:
         yield f"circle, toughness, {faces} faces", partial(circle, options, faces)
 

@@ -13,7 +13,7 @@ from program import ProgramTest, main
 try:
     import scipy  # noqa: F401
     from perf.common import options as common
-    from perf.growth import exact, growth
+    from perf.growth import exact, growth, similarity
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -35,6 +35,25 @@ class Growth(ProgramTest):
         nearly_viscous = exact.VALUES[0.25]
         for value, zero in zip(nearly_viscous, (0.6154113, 1.1258346, 0.544817)):  # Kd = 0
             self.assertAlmostEqual(value / zero, 1, delta=5e-4)
+
+    def test_reference_values_follow_from_their_integral_equations(self):
+        for value, known in zip(similarity.similarity(1, at_tip=36), exact.VALUES[1]):
+            self.assertAlmostEqual(value / known, 1, delta=5e-6)
+        behind, zone, opening, K = similarity.lag(100)
+        self.assertAlmostEqual(behind, growth.LAG, delta=6e-4)
+        self.assertAlmostEqual(opening, growth.SOFTENED, delta=1e-3)
+        self.assertAlmostEqual(2 * K**2, 1, delta=1e-3)  # K^2 = E' G
+
+    def test_the_balance_with_leak_off_has_the_limits_of_toughness_and_leak_off(self):
+        x, s = exact.march(200, 1e-4)
+        self.assertAlmostEqual(s[-1] / x[-1] ** 1.5, 1, delta=0.2)
+        x, s = exact.march(200, 1e4)
+        self.assertAlmostEqual(s[-1] / (math.pi * x[-1] / 2) ** 2, 1, delta=0.01)
+        known = exact.Leaking(1, growth.PLANE, growth.ENERGY, growth.LENGTH, growth.END)
+        length, opening, pressure = known.at(growth.END)
+        self.assertAlmostEqual(length, growth.LENGTH)
+        volume = math.pi / 2 * length * opening  # of the ellipse
+        self.assertAlmostEqual(volume / (known.rate * growth.END), 0.24265, delta=1e-4)  # independent solution
 
     def test_viscosity_reduces_the_strength_and_toughness_alone_has_a_zone_of_three_faces(self):
         for toughness in exact.VALUES:

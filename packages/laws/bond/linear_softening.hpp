@@ -3,6 +3,8 @@
 
 #include "laws/bond/none.hpp"
 
+#include <algorithm>
+
 namespace sprekk::laws {
 
 /// Bond with the shear strength c and the tensile strength T. Opening and slip reduce both strengths by the
@@ -41,12 +43,14 @@ struct SofteningBond {
              .may_be_absent()}};
   }
   static std::vector<Quantity<SofteningBond>> quantities() {
-    return {{"damage of bond", "-", "the part of its strengths that opening and slip have used up",
+    return {{"damage of bond", "-", "the part of its strengths that opening and slip have used up", damage},
+            {"broken fraction", "-", "the damage of the bond", damage, "", "area broken"},
+            {"dissipation of bond", "J/m^2", "the energy per area that the damage of the bond has dissipated",
              [](const SofteningBond& law, const Contact<Real>& at) {
-               const Real used =
-                   at.history[0] * use(law.tensile, law.energy) + at.history[1] * use(law.shear, law.shear_energy);
-               return used < 1 ? used : 1;
-             }}};
+               const Real opened = law.used_by_opening(at), slid = law.used_by_slip(at), used = opened + slid;
+               return (opened * law.energy + slid * law.shear_energy) / (used > 1 ? used : 1);
+             },
+             "", "fracture energy"}};
   }
 
   template <class T>
@@ -69,6 +73,12 @@ struct SofteningBond {
 
  private:
   static constexpr Real rounding = 1e-9;  ///< relative tolerance of tractions and separations against round-off
+
+  Real used_by_opening(const Contact<Real>& at) const { return at.history[0] * use(tensile, energy); }
+  Real used_by_slip(const Contact<Real>& at) const { return at.history[1] * use(shear, shear_energy); }
+  static Real damage(const SofteningBond& law, const Contact<Real>& at) {
+    return std::min(Real(1), law.used_by_opening(at) + law.used_by_slip(at));
+  }
 
   /// Damage per length of opening or slip, 1/m: strength/(2 energy).
   KOKKOS_INLINE_FUNCTION static Real use(Real strength, Real energy) {

@@ -19,6 +19,7 @@ void compare_without_flow(Comparison& c) {
     if (region.pressure) needs_flow("Regions > " + name + " > \"pressure\"");
   for (const auto& [name, fracture] : c.scene().fractures) {
     if (!is_zero(fracture.source)) needs_flow("Fractures > " + name + " > \"source\"");
+    if (!is_zero(fracture.leak_off)) needs_flow("Fractures > " + name + " > \"leak-off coefficient\"");
     if (!fracture.cuts.empty()) needs_flow("Fractures > " + name + " > \"cuts\"");
     if (!fracture.held_pressures.empty()) needs_flow("Fractures > " + name + " > Held pressures");
   }
@@ -43,6 +44,11 @@ void compare_fractures(Comparison& c) {
     if (scene.flow && is_zero(joint->initial_aperture) && is_zero(joint->residual_aperture))
       c.fail("Materials > " + fracture.material + " > \"initial aperture\"",
              "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
+    if (!is_zero(fracture.leak_off) && scene.flow && flows_in_rock(scene))
+      c.fail("Fractures > " + name + " > \"leak-off coefficient\"",
+             "needs rock with the \"permeability\" 0; fluid leaks into other rock by flow");
+    if (!is_zero(fracture.leak_off) && Mechanics::is_in(scene) && is_zero(joint->residual_aperture))
+      c.fail("Materials > " + fracture.material + " > \"residual aperture\"", "must be above 0 with leak-off");
     if (scene.flow && !Mechanics::is_in(scene))  // else mechanics reports all missing entries
       for (const auto& [entry, what] : joint->missing("hydraulic aperture"))
         c.fail(fmt::format("Materials > {} > \"{}\"", fracture.material, entry), what);

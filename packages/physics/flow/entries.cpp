@@ -138,6 +138,10 @@ void Flow::Fracture::describe(base::Section& s) {
   s.entry(source, "source", "m/s", base::any(),
           "volume of injected fluid per area of the fracture and time, with \"Flow\"; a value or an expression of x, "
           "y, z, t");
+  entry_of_place(s, leak_off, "leak-off coefficient", "m/s^0.5", base::at_least(0),
+                 "Carter's coefficient C_L of leak-off into impermeable rock, with \"Flow\": each side of the fracture "
+                 "loses the volume C_L/sqrt(t - t_0) per area and time from its exposure at t_0 on; typical: 1e-6 to "
+                 "1e-4");
   s.entry(cuts, "cuts", "-",
           "names of fractures that this fracture divides at their intersection, with \"Flow\": flow between the two "
           "parts crosses this fracture with its normal permeability");

@@ -18,6 +18,7 @@
 #include "transport/fracture_flow.hpp"
 #include "transport/hybrid_diffusion.hpp"
 #include "transport/intersection_flow.hpp"
+#include "transport/leak_off.hpp"
 #include "transport/storage.hpp"
 #include "transport/well_connections.hpp"
 
@@ -336,6 +337,9 @@ void Flow::add_modules(const Setting& setting, Modules& modules) {
   if (flows_in_rock(scene)) add_rock(setting, std::move(darcy), modules);
   if (mesh.fracture_names.empty()) return;
   const bool denser = fluid.compressibility > 0 || change;
+  if (std::any_of(scene.fractures.begin(), scene.fractures.end(),
+                  [](auto& one) { return !is_zero(one.second.leak_off); }))
+    modules.push_back(transport::make_leak_off(fractures.faces, deforms));
   modules.push_back(transport::make_fracture_flow(mesh.shape, std::move(fractures)));
   if (denser || deforms) modules.push_back(transport::make_fracture_storage(std::move(in_fractures)));
 }

@@ -94,7 +94,7 @@ struct Flow : Physics<Flow> {
   };
 
   struct Fracture : Physics::Fracture {
-    base::Expression source = 0;
+    base::Expression source = 0, leak_off = 0;
     std::vector<std::string> cuts;  ///< names of fractures that the filling of this fracture divides
     std::map<std::string, HeldPressureSection> held_pressures;
     void describe(base::Section& section);

@@ -106,6 +106,8 @@ std::vector<transport::FractureFlowParameters::Face> hydraulics(const Setting& s
         return is_unbroken(scene, mesh, face) ? hydraulics_of_bonded(joint, scene.flow->viscosity, face.centre)
                                               : hydraulics(joint, scene.flow->viscosity, starts[f], face.centre);
       }));
+      const auto& leak_off = scene.fractures.at(mesh.fracture_names[face.fracture]).leak_off;
+      faces.back().leak_off = value_at("leak-off coefficient", leak_off, base::at_least(0), face.centre);
     }
   });
   return faces;

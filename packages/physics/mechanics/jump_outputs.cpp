@@ -23,6 +23,11 @@ std::optional<Real> moment_magnitude(const std::vector<Real>& moment) {
   return 2.0 / 3 * (std::log10(moment[0]) - 9.1);
 }
 
+/// Unit of the integral over a fracture of a quantity in "-" or "J/m^2".
+std::string unit_of_integral(const std::string& unit, int dim) {
+  return unit == "-" ? (dim == 2 ? "m" : "m^2") : (dim == 2 ? "J/m" : "J");
+}
+
 }  // namespace
 
 template <int dim>
@@ -99,6 +104,8 @@ void declare_jump_outputs(const ElasticPlasticJumpParameters& parameters, const 
   for (const auto& quantity : parameters.quantities) {
     Summary summary{Summary::mean_and_max, quantity.name};
     if (!quantity.error_of.empty()) summary = {Summary::error_bound, quantity.error_of};
+    if (!quantity.integral.empty())
+      summary = {Summary::integral, quantity.integral, "", {}, unit_of_integral(quantity.unit, dim)};
     std::vector<laws::QuantityOfFace> of_joint;
     for (const auto& joint : parameters.joints.values) of_joint.push_back(laws::quantity_of(joint.law, quantity.name));
     add(quantity.name, quantity.unit.c_str(), 1, summary, [of_joint](const Jump& jump, auto& all) {

@@ -46,6 +46,9 @@ TEST(Units, numbers_are_what_the_exponent_makes_of_them) {
   EXPECT_NEAR(value_of("1 mD", "m^2"), 9.869233e-16, 1e-22);
   EXPECT_NEAR(value_of("145.0377377 psi", "Pa"), 1e6, 1e-2);
   EXPECT_NEAR(value_of("1 kpsi/ft", "Pa/m"), 22620594, 1);
+  EXPECT_EQ(value_of("3e-5 m/s^0.5", "m/s^0.5"), 3e-5);
+  EXPECT_NEAR(value_of("0.002 ft/min^0.5", "m/s^0.5"), 0.002 * 0.3048 / std::sqrt(60), 1e-19);
+  EXPECT_NEAR(value_of("1 MPa*m^0.5", "Pa*mm^0.5"), 1e6 * std::sqrt(1000), 1e-6);
   for (int i = 1; i < 1000; ++i) {
     const std::string digits = fmt::format("{}.{}", i / 10, i % 10);
     EXPECT_EQ(value_of(digits + " GPa", "Pa"), *parse_number(digits + "e9"));

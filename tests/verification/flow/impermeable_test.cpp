@@ -66,6 +66,42 @@ TEST(ImpermeableRock, FracturesStoreTheFluidOfASource) {
   }
 }
 
+/// The fluid of a source s partly leaks off: the relative density grows by (s t - 4 C_L sqrt(t))/a, in steps of any
+/// length and in both time schemes.
+TEST(ImpermeableRock, FracturesLoseFluidAfterCarter) {
+  constexpr Real c = 0.1, s = 2e-3, initial = 2, C = 4e-4;
+  for (const std::string cell : all_cells)
+    for (const std::string scheme : {"implicit Euler", "BDF2"}) {
+      SCOPED_TRACE(cell + scheme);
+      auto scene = impermeable_box(cell);
+      scene.time.scheme = scheme;
+      scene.flow->compressibility = c;
+      scene.flow->initial_pressure = initial;
+      for (auto& [name, fracture] : scene.fractures) {
+        fracture.source = s;
+        fracture.leak_off = C;
+      }
+      model::Model model(scene, Tpetra::getDefaultComm());
+      Real before = 0, then = 0;
+      for (const Real t : {0.01, 0.5, 1.0, 3.0}) {
+        ASSERT_TRUE(model.step_to(t).converged);
+        const Real lost = 4 * C * std::sqrt(t);
+        const auto constant = [](Real value) { return [=](const auto&, const auto&) { return Vector3{value}; }; };
+        EXPECT_LT(error(model, "fracture pressure",
+                        constant(std::log(std::exp(c * initial) + (s * t - lost) / aperture) / c)),
+                  1e-9);
+        EXPECT_LT(error(model, "leaked fluid", constant(lost)), 1e-15);
+        EXPECT_LT(error(model, "exposure time", constant(t)), 1e-12);
+        for (const auto& total : model.system().totals(model.state()))
+          if (total.names.back() == "leak-off") {
+            EXPECT_NEAR(total.value, -2 * (lost - before) / (t - then), 1e-12);  // two fractures of area 1
+          }
+        before = lost;
+        then = t;
+      }
+    }
+}
+
 /// Fracture "a" conducts between two sides at y = 1/2, with an outflow on the east side.
 TEST(ImpermeableRock, AFractureCarriesAnOutflow) {
   for (const std::string cell : all_cells) {
