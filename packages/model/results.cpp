@@ -98,10 +98,6 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     catalogue_.emplace(mesh, rule->rate, model_.time(), model_.system().outputs(model_.state()));
     if (earlier) catalogue_->resume(mesh, earlier->journal, earlier->faces);
   }
-  physics::for_each_physics([&]<physics::HasLog P>(P) {
-    const auto columns = P::Log::columns(model_.setting());
-    log_columns_.insert(log_columns_.end(), columns.begin(), columns.end());
-  });
   if (!earlier) add_initial_state();
   if (!probes_.empty()) start_probes(earlier);
   write_json();
@@ -346,16 +342,12 @@ json Results::reactions() {
   return all;
 }
 
-std::vector<Real> Results::log_values() const {
-  std::vector<Real> values;
-  for (const auto& [title, section, result] : log_columns_) {
-    Real largest = std::numeric_limits<Real>::quiet_NaN();
-    for (const auto& member : json_["steps"].back().value(section, json::object()))
-      if (const auto& value = member.value(result, json()); value.is_number())
-        largest = std::fmax(largest, value.get<Real>());
-    values.push_back(largest);
-  }
-  return values;
+Real Results::value_of(const physics::LogColumn& column) const {
+  Real largest = std::numeric_limits<Real>::quiet_NaN();
+  for (const auto& member : json_["steps"].back().value(column.section, json::object()))
+    if (const auto& value = member.value(column.result, json()); value.is_number())
+      largest = std::fmax(largest, value.get<Real>());
+  return largest;
 }
 
 std::vector<std::string> Results::fracture_digest() const {

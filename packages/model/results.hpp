@@ -55,9 +55,8 @@ class Results {
   /// Adds the state at the end of a step; `last` writes field files regardless of "every". Returns the numbers of open,
   /// sticking and slipping fracture faces.
   std::array<long long, 3> add_step(const StepTaken& taken, bool last);
-  /// Columns of the log, and their values after the last step; NaN if undefined. Stored data of rank 0.
-  const std::vector<physics::LogColumn>& log_columns() const { return log_columns_; }
-  std::vector<Real> log_values() const;
+  /// Value of a column of the log after the last step; NaN if undefined. Stored data of rank 0.
+  Real value_of(const physics::LogColumn& column) const;
   /// Returns warnings for the states added since the last call; each text occurs only once.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// Lines with the single fractures in each contact state after the last step. Stored data.
@@ -103,7 +102,6 @@ class Results {
   std::optional<io::SeriesFiles> series_;       // files of the probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
   std::map<std::string, std::string> units_;    // units of reactions()
-  std::vector<physics::LogColumn> log_columns_;
   nlohmann::json json_, probes_begun_ = nlohmann::json::object();
   int n_steps_ = 0, n_written_ = 0;
   std::vector<Real> ends_;  // end times of the steps so far, s

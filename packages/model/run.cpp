@@ -33,12 +33,16 @@ namespace {
 /// Table of time steps in the log, one line per step.
 class Progress {
  public:
-  Progress(base::Log& log, const Steps& steps, const Results& results)
+  Progress(base::Log& log, const physics::Setting& setting, const Steps& steps, const Results& results)
       : log_(log), steps_(steps), results_(results), share_before_(steps.share_done()) {
-    std::string columns;
-    for (const auto& column : results.log_columns()) columns += fmt::format(" {:>9}", column.title);
+    physics::for_each_physics([&]<physics::HasLog P>(P) {
+      const auto columns = P::Log::columns(setting);
+      columns_.insert(columns_.end(), columns.begin(), columns.end());
+    });
+    std::string titles;
+    for (const auto& column : columns_) titles += fmt::format(" {:>9}", column.title);
     log_.info("{:>12} {:>10} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8}{} {:>9} {:>9}", "time", "dt", "Newton", "linear",
-              "cuts", contact::state_names[0], contact::state_names[1], contact::state_names[2], columns, "elapsed",
+              "cuts", contact::state_names[0], contact::state_names[1], contact::state_names[2], titles, "elapsed",
               "remaining");
   }
 
@@ -51,8 +55,10 @@ class Progress {
                                ? elapsed / done_ * steps_.n_left()
                                : elapsed * (1 - share) / (share - share_before_);
     std::string values;
-    for (const Real value : results_.log_values())
+    for (const auto& column : columns_) {
+      const Real value = results_.value_of(column);
       values += std::isnan(value) ? fmt::format(" {:>9}", "-") : fmt::format(" {:>9.3g}", value);
+    }
     log_.info("{:>12.5g} {:>10.3g} {:>6} {:>6} {:>5} {:>8} {:>8} {:>8}{} {:>8.1f}s {:>8.1f}s", report.time,
               report.time - step.begin, report.newton_iterations, solve::iterations(report.linear_solves), report.cuts,
               faces[0], faces[1], faces[2], values, elapsed, remaining);
@@ -62,6 +68,7 @@ class Progress {
   base::Log& log_;
   const Steps& steps_;
   const Results& results_;
+  std::vector<physics::LogColumn> columns_;
   Real share_before_;
   int done_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -208,7 +215,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
                   base::Log& log, const std::function<bool()>& should_stop) {
   const Scene& scene = model.scene();
   if (!steps.any()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
-  Progress progress(log, steps, results);
+  Progress progress(log, model.setting(), steps, results);
   std::string floating;
   while (steps.any()) {
     bool interrupted = false;
