@@ -10,6 +10,7 @@
 #include "physics/comparison.hpp"
 #include "physics/flow/fluid_flux.hpp"
 #include "physics/flow/hydraulics.hpp"
+#include "physics/flow/wells_and_channels.hpp"
 #include "physics/mechanics/mechanics.hpp"
 #include "physics/poroelasticity/poroelasticity.hpp"
 #include "physics/scene.hpp"
@@ -23,9 +24,7 @@
 #include "transport/well_connections.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <set>
 
 namespace sprekk::physics {
 
@@ -35,30 +34,6 @@ std::vector<transport::FluxCondition> fluid_conditions(const Scene& scene, const
   return flux_conditions(scene, mesh,
                          {&BoundaryCondition::flux, &BoundaryCondition::pressure, &BoundaryCondition::conductance},
                          of_fractures);
-}
-
-std::vector<transport::Well> wells_in(const Scene& scene, int dim) {
-  std::vector<transport::Well> wells;
-  for (const auto& [name, one] : scene.flow->wells) {
-    wells.push_back({.name = name,
-                     .points = {},
-                     .radius = one.radius,
-                     .skin = one.skin,
-                     .rate = one.rate,
-                     .pressure = one.pressure});
-    for (std::size_t k = 0; k < one.points.size(); k += dim)
-      std::copy_n(&one.points[k], dim, wells.back().points.emplace_back().begin());
-  }
-  return wells;
-}
-
-transport::Channel channel_of(const IntersectionSection& section, const Scene& scene, const mesh::Mesh& mesh) {
-  const Real permeability_area = section.conductance(1);
-  transport::Channel channel{.conductance = permeability_area / scene.flow->viscosity,
-                             .area = std::sqrt(8 * M_PI * permeability_area)};
-  for (const auto& name : section.fractures) channel.fractures.push_back(base::index_of(mesh.fracture_names, name));
-  std::sort(channel.fractures.begin(), channel.fractures.end());
-  return channel;
 }
 
 /// Quantities that the fluid transports for all physics of a scene.
@@ -381,139 +356,9 @@ std::unique_ptr<estimate::MeshError> Flow::Estimate::mesh_error(const Setting& s
   return transport::make_balance_error(system, std::move(parameters));
 }
 
-namespace {
-
-/// Warns about joints that a compression of 1e-3 of Young's modulus closes by more than their initial aperture.
-void add_closure_warnings(const Setting& setting, std::vector<std::string>& warnings) {
-  const auto& [scene, mesh, start] = setting;
-  if (!Mechanics::is_in(scene)) return;
-  Real modulus = 0;
-  for (const auto& rock : elasticity(scene, mesh).values) modulus = std::max(modulus, rock.youngs_modulus());
-  const Real compression = 1e-3 * base::max_over_ranks(*mesh.comm, modulus), zero = 0;
-  std::set<std::string> seen;
-  for (std::size_t k = 0; k < mesh.single_fractures.size(); ++k) {
-    const auto& joint = joint_of(scene, mesh, static_cast<int>(k));
-    if (!joint.is_uniform() || joint.is_in_situ()) continue;
-    const auto law = joint.joint({}).law;
-    const Real aperture = joint.initial_aperture({}, 0),
-               closure = -law.closure(laws::Contact<Real>{.lambda_n = -compression, .history = {&zero, 0}});
-    if (aperture == 0 || !(closure > aperture) || !seen.insert(fmt::format("{} {}", closure, aperture)).second)
-      continue;
-    const bool residual = !is_zero(joint.residual_aperture);
-    warnings.push_back(fmt::format(
-        "{}: fracture \"{}\": a compression of {:.3g} Pa closes the joint by {:.3g} m, more than its \"initial "
-        "aperture\" "
-        "{:.3g} m; {}",
-        scene.origin, mesh.single_fractures[k].name, compression, closure, aperture,
-        residual ? "the fluid then has the \"residual aperture\"" : "the fluid in it then bears the compression"));
-  }
-}
-
-/// Warns about wells near a fracture in 2D, where rounded coordinates may be the cause.
-void add_well_warnings(const Setting& setting, std::vector<std::string>& warnings) {
-  const auto& [scene, mesh, start] = setting;
-  const auto wells = wells_in(scene, mesh.dim());
-  for (const auto& [w, single, distance] : transport::wells_near_fractures(mesh, wells))
-    warnings.push_back(implausible(
-        fmt::format("{}: Sprekk > Flow > Wells > {} > \"points\"", scene.origin, wells[w].name),
-        fmt::format("({:.10g}, {:.10g}) is {:.3g} m beside the fracture \"{}\", less than half of a face",
-                    wells[w].points[0][0], wells[w].points[0][1], distance, mesh.single_fractures[single].name),
-        "the well is connected to the rock only", "if it should be on the fracture, give a point of the fracture"));
-}
-
-/// Warns about channels without an intersection. Collective.
-void add_channel_warnings(const Setting& setting, std::vector<std::string>& warnings) {
-  const auto& [scene, mesh, start] = setting;
-  for (const auto& [name, one] : scene.flow->intersections)
-    if (transport::length_of(channel_of(one, scene, mesh), mesh) == 0)
-      warnings.push_back(implausible(fmt::format("{}: Sprekk > Flow > Intersections > {}", scene.origin, name),
-                                     one.fractures.empty() ? "no fractures meet" : "its \"fractures\" do not meet",
-                                     "the channel has no effect", "remove it, or name fractures that intersect"));
-}
-
-/// Returns whether fluid may leave, or enter other than by wells with a rate.
-bool is_open(const Scene& scene) {
-  const auto any = [](const auto& all, const auto& has) {
-    return std::any_of(all.begin(), all.end(), [&](const auto& named) { return has(named.second); });
-  };
-  return any(scene.flow->wells, [](const auto& well) { return well.pressure.has_value(); }) ||
-         any(scene.boundary_conditions, [](const auto& one) { return one.pressure || one.flux; }) ||
-         any(scene.regions, [](const auto& region) { return region.pressure.has_value(); }) ||
-         any(scene.fractures, [](const auto& fracture) { return !fracture.held_pressures.empty(); });
-}
-
-/// Warns about wells that inject more than 1 % of the volume of rock without an outlet. Collective.
-void add_injection_warnings(const Setting& setting, const std::vector<Real>& times,
-                            std::vector<std::string>& warnings) {
-  constexpr Real maximum = 0.01;
-  const auto& [scene, mesh, start] = setting;
-  if (!Mechanics::is_in(scene) || is_open(scene)) return;
-  Real here = 0;
-  const auto volumes = assembly::cell_volumes(mesh);
-  for (LocalIndex c = 0; c < mesh.n_owned_cells; ++c) here += volumes[c];
-  const Real volume = base::sum_over_ranks(*mesh.comm, here);
-  Real injected = 0, end = start;
-  try {
-    for (const Real t : times) {
-      if (injected > maximum * volume) break;
-      for (const auto& well : wells_in(scene, mesh.dim())) injected += (t - end) * (*well.rate)(well.points[0], t);
-      end = t;
-    }
-  } catch (const Error&) {  // of an expression; the first step reports it
-    return;
-  }
-  if (!(injected > maximum * volume)) return;
-  warnings.push_back(implausible(
-      scene.origin + ": Sprekk > Flow > Wells",
-      fmt::format("{:.3g} {} of fluid enter until t = {:.4g} s, {:.3g} % of the volume of the rock, and none leave",
-                  injected, mesh.dim() == 2 ? "m^2" : "m^3", end, 100 * injected / volume),
-      "the fluid opens fractures or expands the rock by this volume, and an equilibrium need not exist",
-      "check rates and units, or give a pressure at a boundary"));
-}
-
-}  // namespace
-
-std::vector<std::string> Flow::Warnings::of_input(const Setting& setting, const std::vector<Real>& times) {
-  std::vector<std::string> all;
-  if (is_in(setting.scene)) add_injection_warnings(setting, times, all);
-  return all;
-}
-
-std::vector<std::string> Flow::warnings(const Setting& setting) {
-  const auto& [scene, mesh, start] = setting;
-  if (!is_in(scene)) return {};
-  std::vector<std::string> all;
-  if (flows_in_rock(scene))
-    if (const auto skew = transport::scheme_warning(scheme_entry(scene), mesh, mobility(scene, mesh)); !skew.empty())
-      all.push_back(scene.origin + ": " + skew);
-  add_closure_warnings(setting, all);
-  add_well_warnings(setting, all);
-  add_channel_warnings(setting, all);
-  return all;
-}
-
 std::vector<LogColumn> Flow::Log::columns(const Setting& setting) {
   if (!is_in(setting.scene) || setting.scene.flow->wells.empty()) return {};
   return {{"well [Pa]", "wells", "pressure"}};
-}
-
-std::vector<std::string> Flow::Warnings::of_state(const Setting& setting, const std::vector<Real>&,
-                                                  const std::vector<assembly::OutputField>& outputs) {
-  const auto& [scene, mesh, start] = setting;
-  if (!is_in(scene)) return {};
-  std::array<Real, 2> here{};  // largest value of -p, and of |p|
-  for (const auto& output : outputs)
-    for (const Real p : output.values)
-      if (output.name == "pressure" || output.name == "fracture pressure") {
-        here[0] = std::max(here[0], -p);
-        here[1] = std::max(here[1], std::abs(p));
-      }
-  const auto all = base::max_over_ranks(*mesh.comm, here);
-  if (all[0] <= 1e-9 * all[1]) return {};
-  return {
-      fmt::format("{}: the pressure of the fluid is below 0 in places; if it is an absolute pressure, a real fluid "
-                  "boils or cavitates there; if it is relative to another pressure, ignore this warning",
-                  scene.origin)};
 }
 
 }  // namespace sprekk::physics
