@@ -20,7 +20,7 @@ constexpr Real rounding = 1e-9;  ///< rounding error / largest integral
 
 struct Event {
   std::string fracture;
-  Real start, end, mean = 0, integral = 0;
+  Real start, end = 0, mean = 0, integral = 0;
 };
 
 /// Times and lists of single fractures of all steps with results. Row 0 is the start, with zeros.

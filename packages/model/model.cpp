@@ -249,7 +249,6 @@ void Model::start_solver() {
   newton_ = std::make_unique<solve::Newton>(*system_, scene_.solver, timers_);
   auto stepping = scene_.time.stepping;
   stepping.predicts = system_->evolves();
-  stepping.accuracy = scene_.time.tolerance.value_or(0);
   stepper_ = std::make_unique<solve::TimeStepper>(*system_, *newton_, stepping);
 }
 

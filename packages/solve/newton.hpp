@@ -54,11 +54,9 @@ class Newton {
   /// Solves f(x) = 0, starting from x. The first step is full. Later steps use a non-monotone line search: the merit
   /// may exceed the last one, but not the largest of three iterates. If this fails, steps are damped. Failures are
   /// reported; x is then the last iterate. Errors in evaluations of the problem pass through. Collective; the report is
-  /// the same on all ranks. `accuracy` is that of the time step if x is an extrapolated state, otherwise 0. The change
-  /// of such a state by Newton's method is of the size of the error of the step. An iterate is then also a solution if
-  /// the measures, except those of balances, are at most a hundredth of those of x and of `accuracy`.
+  /// the same on all ranks.
   NewtonReport solve(BlockVector& x);
-  NewtonReport solve(Evaluation& x, Real accuracy = 0);
+  NewtonReport solve(Evaluation& x);
 
   /// Computes the Jacobian at x, for the next calls of solve_linearized(). Collective.
   void linearize(const Evaluation& x);

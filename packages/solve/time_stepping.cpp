@@ -33,8 +33,8 @@ void TimeSteppingOptions::describe(base::Section& section) {
                 "relaxed to zero; only after three bisections if shorter steps are easier to solve");
 }
 
-NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report, Real accuracy) {
-  auto newton = newton_.solve(x, accuracy);
+NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
+  auto newton = newton_.solve(x);
   report.newton_iterations += newton.iterations;
   append(newton.linear_solves, report.linear_solves);
   append(newton.advected_solves, report.advected_solves);
@@ -47,7 +47,7 @@ NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, 
   if (options_.predicts) {
     if (auto predicted = predictor_.predict(x.x(), t, dt); !predicted.empty()) {
       Evaluation from(predicted);
-      auto newton = solve(from, report, options_.accuracy);
+      auto newton = solve(from, report);
       if (newton.converged || newton.stopped) {
         x = from;
         return newton;

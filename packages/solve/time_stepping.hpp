@@ -10,7 +10,6 @@ struct TimeSteppingOptions {
   int max_halvings = 6;               ///< smallest substep: step / 2^max_halvings
   bool proximal_continuation = true;  ///< proximal continuation before the first halving, see TimeStepper::relax()
   bool predicts = false;              ///< Newton's method starts from extrapolated states; not an entry of scenes
-  Real accuracy = 0;                  ///< of steps from extrapolated states, see Newton::solve(); not an entry
 
   void describe(base::Section& section);
 };
@@ -45,7 +44,7 @@ class TimeStepper {
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
-  NewtonReport solve(Evaluation& x, StepReport& report, Real accuracy = 0);
+  NewtonReport solve(Evaluation& x, StepReport& report);
   NewtonReport solve_from_prediction(Evaluation& x, Real t, Real dt, StepReport& report);
   NewtonReport place_at_minimum_norm(Evaluation& x, NewtonReport newton, int& placements, StepReport& report);
   NewtonReport relax(Evaluation& x, StepReport& report);

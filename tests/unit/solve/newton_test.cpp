@@ -169,42 +169,6 @@ TEST(Newton, ReturnsToTheIterateBeforeAdditionalIterations) {
   EXPECT_NEAR(x[0]->getData()[0], -1, 1e-12);
 }
 
-/// x |x| = 1 and -1 on each rank, on request as balances. Residuals of opposite states are opposite.
-class Parabolas : public ScalarProblem {
- public:
-  Parabolas(const RCP<const Comm>& comm, bool balance)
-      : ScalarProblem(
-            comm, 2 * comm->getSize(), [](Real x, Real, Real) { return x > 0 ? x * x - 1 : 1 - x * x; },
-            [](Real x, Real, Real) { return 2 * std::abs(x); }),
-        blocks_(ScalarProblem::blocks()) {
-    blocks_.front().balance = balance;
-  }
-  const std::vector<Block>& blocks() const override { return blocks_; }
-  std::vector<Measure> measures(const Evaluation&, const BlockVector& r) override { return {{"x", r[0]->normInf()}}; }
-
- private:
-  std::vector<Block> blocks_;
-};
-
-/// The measures are 2e-3 at the start and 1e-6 after an iteration. Balances always meet the tolerance.
-TEST(Newton, SolvesFromExtrapolatedStatesToTheAccuracyOfTheStep) {
-  const auto iterations = [](bool balance, Real accuracy) {
-    Parabolas problem(Tpetra::getDefaultComm(), balance);
-    Newton newton(problem, {});
-    auto start = problem.constant(1.001);
-    start[0]->replaceLocalValue(1, -1.001);
-    Evaluation x(start);
-    problem.set_time(1, 1);
-    const auto report = newton.solve(x, accuracy);
-    EXPECT_TRUE(report.converged) << report.reason;
-    return report.iterations;
-  };
-  EXPECT_EQ(iterations(false, 0), 2);
-  EXPECT_EQ(iterations(false, 1e-3), 1);
-  EXPECT_EQ(iterations(false, 1e-5), 2);  // a hundredth of this is 1e-7
-  EXPECT_EQ(iterations(true, 1e-3), iterations(true, 0));
-}
-
 /// x decreases by f(x), which is given for the successive iterates x_0 = 0, x_1, ... The measures of x_0 alone have not
 /// converged. f is the error of the sum of a balance, relative to f(0) = 1. Merits of converged iterates are round-off.
 class GivenImbalances : public ScalarProblem {
