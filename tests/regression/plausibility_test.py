@@ -71,6 +71,18 @@ class Plausibility(ProgramTest):
         for text in ('Heat > "initial temperature": is 180 K', 'surface > "temperature": is 20 K', "add 273.15"):
             self.assertIn(text, err)
 
+    def test_injection_without_outlet(self):
+        """The rock has 4e4 m^2. 3e-4 m^2/s exceed 1 % after 16 days, 1.5e-4 m^2/s not in 30 days."""
+        scene, closed = self.scene("poro/injection_days_2d.xml"), self.folder / "closed.xml"
+        closed.write_text(re.sub(r'\n *<Parameter name="pressure" type="string" value="10 MPa"/>', "", scene.read_text()))
+        much, less = (f"Flow.Wells.injector.rate={rate}" for rate in (3e-4, 1.5e-4))
+        for ranks in (1, 2):
+            err = self.warnings(closed, much, ranks=ranks)
+            for text in ("Sprekk > Flow > Wells: 415 m^2 of fluid enter until t = 1.382e+06 s, 1.04 % of the volume", "none leave",
+                         "an equilibrium need not exist", "pressure at a boundary"):
+                self.assertIn(text, err)
+        self.assertEqual(self.warnings(closed, less) + self.warnings(scene, much), "")
+
     def test_channels(self):
         channels = self.scene("flow/channels_3d.xml")
         self.assertEqual(self.warnings(channels), "")

@@ -1,5 +1,6 @@
 #include "physics/flow/flow.hpp"
 
+#include "assembly/geometry.hpp"
 #include "base/check.hpp"
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
@@ -23,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 namespace sprekk::physics {
@@ -420,6 +422,30 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
   add_well_warnings(setting, all);
   add_channel_warnings(setting, all);
   return all;
+}
+
+/// Warns about wells that inject more than 1 % of the volume of the rock without an outlet.
+std::vector<std::string> Flow::Warnings::of_input(const Setting& setting, const std::vector<Real>& times) {
+  const auto& [scene, mesh, start] = setting;
+  if (!is_in(scene) || !Mechanics::is_in(scene)) return {};
+  const auto wells = wells_in(scene, mesh.dim());
+  bool closed = std::all_of(wells.begin(), wells.end(), [](const auto& well) { return well.rate.has_value(); });
+  for (const auto& [name, one] : scene.boundary_conditions) closed = closed && !one.pressure && !one.flux;
+  for (const auto& [name, one] : scene.regions) closed = closed && !one.pressure;
+  for (const auto& [name, one] : scene.fractures) closed = closed && one.held_pressures.empty();
+  const auto volumes = assembly::cell_volumes(mesh);
+  const Real rock =
+      base::sum_over_ranks(*mesh.comm, std::accumulate(volumes.begin(), volumes.begin() + mesh.n_owned_cells, Real(0)));
+  Real injected = 0, end = start;
+  for (auto t = times.begin(); closed && t != times.end() && injected <= 0.01 * rock; end = *t++)
+    for (const auto& well : wells) injected += (*t - end) * (*well.rate)(well.points[0], *t);
+  if (injected <= 0.01 * rock) return {};
+  return {implausible(
+      scene.origin + ": Sprekk > Flow > Wells",
+      fmt::format("{:.3g} {} of fluid enter until t = {:.4g} s, {:.3g} % of the volume of the rock, and none leave",
+                  injected, mesh.dim() == 2 ? "m^2" : "m^3", end, 100 * injected / rock),
+      "the fluid opens fractures or expands the rock by this volume, and an equilibrium need not exist",
+      "check rates and units, or give a pressure at a boundary")};
 }
 
 std::vector<std::string> Flow::Warnings::of_state(const Setting& setting, const std::vector<Real>&,

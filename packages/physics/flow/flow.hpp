@@ -145,7 +145,7 @@ struct Flow : Physics<Flow> {
     static std::unique_ptr<estimate::MeshError> mesh_error(const Setting& setting, assembly::System& system);
   };
   struct Warnings {
-    static std::vector<std::string> of_input(const Setting&, const std::vector<Real>&) { return {}; }
+    static std::vector<std::string> of_input(const Setting& setting, const std::vector<Real>& times);
     static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>& times,
                                              const std::vector<assembly::OutputField>& outputs);
   };
