@@ -98,10 +98,6 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     catalogue_.emplace(mesh, rule->rate, model_.time(), model_.system().outputs(model_.state()));
     if (earlier) catalogue_->resume(mesh, earlier->journal, earlier->faces);
   }
-  physics::for_each_physics([&]<physics::HasLog P>(P) {
-    const auto columns = P::Log::columns(model_.setting());
-    log_columns_.insert(log_columns_.end(), columns.begin(), columns.end());
-  });
   if (!earlier) add_initial_state();
   if (!probes_.empty()) start_probes(earlier);
   write_json();
@@ -346,9 +342,18 @@ json Results::reactions() {
   return all;
 }
 
+std::vector<physics::LogColumn> Results::log_columns() const {
+  std::vector<physics::LogColumn> all;
+  physics::for_each_physics([&]<physics::HasLog P>(P) {
+    const auto columns = P::Log::columns(model_.setting());
+    all.insert(all.end(), columns.begin(), columns.end());
+  });
+  return all;
+}
+
 std::vector<Real> Results::log_values() const {
   std::vector<Real> values;
-  for (const auto& [title, section, result] : log_columns_) {
+  for (const auto& [title, section, result] : log_columns()) {
     Real largest = std::numeric_limits<Real>::quiet_NaN();
     for (const auto& member : json_["steps"].back().value(section, json::object()))
       if (const auto& value = member.value(result, json()); value.is_number())

@@ -56,7 +56,7 @@ class Results {
   /// sticking and slipping fracture faces.
   std::array<long long, 3> add_step(const StepTaken& taken, bool last);
   /// Columns of the log, and their values after the last step; NaN if undefined. Stored data of rank 0.
-  const std::vector<physics::LogColumn>& log_columns() const { return log_columns_; }
+  std::vector<physics::LogColumn> log_columns() const;
   std::vector<Real> log_values() const;
   /// Returns warnings for the states added since the last call; each text occurs only once.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
@@ -103,7 +103,6 @@ class Results {
   std::optional<io::SeriesFiles> series_;       // files of the probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
   std::map<std::string, std::string> units_;    // units of reactions()
-  std::vector<physics::LogColumn> log_columns_;
   nlohmann::json json_, probes_begun_ = nlohmann::json::object();
   int n_steps_ = 0, n_written_ = 0;
   std::vector<Real> ends_;  // end times of the steps so far, s

@@ -60,7 +60,7 @@ def sizes(texts):
     outside = [path for path in sources if is_outside(path)]
     folders = {path.split("/")[2] for path in sources if path.count("/") > 2}
     lines = sum(text.count("\n") for text in sources.values())
-    yield "lines of packages/physics / number of physics", 2800, {"": round(lines / max(1, len(folders)))}
+    yield "lines of packages/physics / number of physics", 2835, {"": round(lines / max(1, len(folders)))}
     yield "sources of packages/physics outside of folders", 8, {"": len(outside)}
     yield "their includes of folders, except in list.hpp", 0, {
         path: len(re.findall(r'#\s*include\s*"physics/\w+/', sources[path]))
