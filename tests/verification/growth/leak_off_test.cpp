@@ -1,6 +1,7 @@
 // Leak-off after Carter from a growing fracture, from the balance of a pressurised crack at its toughness.
 #include "injected_notch.hpp"
 
+#include "assembly/jacobian_check.hpp"
 #include "model/fracture_table.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -141,6 +142,25 @@ TEST(LeakOff, TheTableOfFracturesContainsTheirGrowth) {
     EXPECT_NEAR(value("leaked_volume", flat ? "m^2" : "m^3") / leaked(model), 1, 1e-12);
     EXPECT_NEAR(value("fluid_volume", flat ? "m^2" : "m^3") / sums.volume, 1, 1e-3);  // less the films
   }
+}
+
+/// The loss of partly open faces depends on their widening.
+TEST(LeakOff, TheJacobianIsItsDerivative) {
+  auto scene = small_body("quadrilateral");
+  scene.fractures.at("growing").leak_off = leak_off;
+  model::Model model(scene, Tpetra::getDefaultComm());
+  auto& system = model.system();
+  system.set_time(1, 0.5);
+  auto x = system.initial();
+  for (std::size_t b = 0; b < x.size(); ++b)
+    if (system.layouts()[b].field().name == "widening") x[b]->putScalar(0.3 * residual);
+  int n = 0;
+  for (const auto& one : assembly::check_jacobian(system, x))
+    if (one.module == "leak-off") {
+      EXPECT_LE(one.error, 1e-7) << one.row << ", " << one.column;
+      ++n;
+    }
+  EXPECT_GT(n, 0);
 }
 
 /// Negative coefficients, rock with flow, and fractures without a residual aperture are errors.
