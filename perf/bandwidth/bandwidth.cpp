@@ -146,17 +146,23 @@ json measure(const model::Scene& scene, RCP<const Comm> comm) {
                "the scene is solved directly; Solver.Linear solver.type must be iterative");
   const RCP<const fields::CrsMatrix> A = system.create_matrix()(0, 0);  // before elimination; values are irrelevant
   result["medians"] = medians(*comm, {triad(), product("SpMV", A)});
-  std::vector<Real> cycles;
+  std::vector<Real> whole;
+  std::vector<std::vector<Real>> of_parts(solver.costs().size());
   const auto preconditioner = product("preconditioner", solver.preconditioner());
   for (int round = 0; round < n_rounds; ++round) {
-    const Real before = solver.costs().back().application_seconds;
-    preconditioner.work();
-    cycles.push_back(solver.costs().back().application_seconds - before);
+    const auto before = solver.costs();
+    whole.push_back(time_of(*comm, preconditioner.work));
+    for (std::size_t k = 0; k < before.size(); ++k)
+      of_parts[k].push_back(solver.costs()[k].application_seconds - before[k].application_seconds);
   }
-  const auto cycle = solver.costs().back();  // multigrid, perhaps below a fine level
-  result["V-cycle"] = {{"seconds", median(cycles)},
-                       {"bytes", sum(*comm, cycle.cycle_bytes)},
-                       {"operator_complexity", cycle.operator_complexity}};
+  result["preconditioner"] = median(whole);
+  const auto costs = solver.costs();
+  for (std::size_t k = 0; k < costs.size(); ++k)  // the last one is multigrid, perhaps below a fine level
+    result["parts"].push_back({{"name", costs[k].name},
+                               {"seconds", median(of_parts[k])},
+                               {"bytes", sum(*comm, costs[k].cycle_bytes)},
+                               {"operator_complexity", costs[k].operator_complexity},
+                               {"unknowns", costs[k].n_unknowns}});
   result["triad_bytes"] = sum(*comm, 3.0 * sizeof(Real) * triad_length);
   result["spmv_bytes"] = sum(*comm, bytes(*A));
   result["unknowns"] = A->getGlobalNumRows();

@@ -1,17 +1,20 @@
 """Costs of the parts of a Newton step, in products of the displacement matrix with a vector, and their share of the memory bandwidth.
 
-The scene is a network with open, sticking and sliding fractures. bandwidth.cpp measures the times."""
+The scenes are a grid of fractures, open, sticking and sliding, and a network of 300 random fractures with crack tips.
+bandwidth.cpp measures the times."""
 import json
 
 from perf.common import options as common
 from perf.common import table
-from perf.common.program import measured
+from perf.common.program import measured, mesh
 from perf.krylov import linear
 from perf.krylov.krylov import STATES
 
 STATE = "mixed"
 EDGE, QUICK = 30, 18  # cells along an edge: 111 and 29 thousand unknowns
 CELLS = {"tetrahedra": "tetrahedron", "hexahedra": "hexahedron"}
+NETWORK = "networks/random_3d_300.xml"
+PROGRAM = common.ROOT / "build/apps/sprekk/sprekk"  # for its mesh
 COLUMNS = {"part": "", "count": "d", "ms": ".4g", "SpMV": ".1f", "of triad": ".2f", "of time": ".3f", "required": ""}
 ASKED = {  # targets of the last line: at least (+), at most (-)
     "spmv_share": (+1, 0.6), "assembly_spmv": (-1, 20), "assemblies": (-1, 1), "solve_reused_spmv": (-1, 300), "solve_first_spmv": (-1, 450),
@@ -37,7 +40,7 @@ class Measured:
         """Rows (name, count, seconds, share of the triad's bandwidth, share of the step's time, key of the last
         line)."""
         found, phases = self.found, self.phases
-        assembly, cycle, contact = phases["assembly of the linear part"], found["V-cycle"], phases[CONTACT]
+        assembly, cycle, contact = phases["assembly of the linear part"], found["parts"][-1], phases[CONTACT]
         touch = found["first touch"]
         return [("2 GiB touched for the first time", None, touch["first"], None, None, None),
                 ("2 GiB touched again", None, touch["again"], None, None, None),
@@ -46,6 +49,7 @@ class Measured:
                 ("assembly of the bulk", assembly["count"], assembly["seconds"], None, None, "assembly_spmv"),
                 ("structure of the matrices", None, phases["structure of the matrices"]["seconds"], None, None, None),
                 ("V-cycle", None, cycle["seconds"], self.share(cycle["bytes"], cycle["seconds"]), None, None),
+                ("preconditioner", None, found["preconditioner"], None, None, None),
                 ("elimination", None, self.first["local elimination"]["seconds"], None, None, None),
                 ("first set-up", None, self.first_setup, None, None, None),
                 ("elimination and set-up, kept", None, found["elimination and set-up"], None, None, None),
@@ -69,8 +73,11 @@ def required(key):
 
 
 def run(options, cells, edge):
-    sets = (*linear.ALWAYS, *linear.cells(edge), f"Mesh.cell={CELLS[cells]}", *STATES[STATE])
-    found = measured(options, linear.SCENE, sets, options.ranks)
+    if cells == "network":
+        scene, sets = NETWORK, (f"Mesh file.path={mesh(PROGRAM, NETWORK, options.output / 'mesh/network.msh')}", *linear.ALWAYS)
+    else:
+        scene, sets = linear.SCENE, (*linear.ALWAYS, *linear.cells(edge), f"Mesh.cell={CELLS[cells]}", *STATES[STATE])
+    found = measured(options, scene, sets, options.ranks)
     (options.output / f"{cells}.json").write_text(json.dumps(found, indent=2))
     return Measured(found)
 
@@ -105,7 +112,7 @@ def main(words):
     parser.add_argument("--edge", type=common.count, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
     parser.add_argument("--ranks", type=common.count, default=1, metavar="N", help="ranks (1)")
     options = parser.parse_args(words)
-    chosen = common.matching(options, CELLS)
+    chosen = common.matching(options, CELLS if options.quick else (*CELLS, "network"))
     edge = options.edge or (QUICK if options.quick else EDGE)
     printed, measured = table.Table(COLUMNS, 42), {}
     for cells in chosen:
