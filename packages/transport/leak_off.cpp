@@ -38,6 +38,7 @@ struct LeakingFace {
   KOKKOS_INLINE_FUNCTION Real aperture(int f, Real widening) const { return initial(f) + widening; }
   /// Share s of the loss.
   KOKKOS_INLINE_FUNCTION Real share(int f, Real widening) const {
+    if (!(closing(f) > 0)) return 1;
     const Real a = aperture(f, widening);
     return a >= closing(f) ? 1 : a > 0 ? a / closing(f) : 0;
   }

@@ -134,7 +134,8 @@ template <class Op, bool changes>
 class Storage final : public assembly::Module,
                       public assembly::Loads,
                       public assembly::InitialValues,
-                      public assembly::Steps {
+                      public assembly::Steps,
+                      public assembly::Transfer {
  public:
   static constexpr int m = Op::Columns::size, n = m + changes;  // components of the history
 
@@ -200,6 +201,8 @@ class Storage final : public assembly::Module,
 
   assembly::Scales loads(Real) const override { return {{of_.scale, largest_}}; }
 
+  /// Entities without a history, such as new channels, are full of fluid in the present state.
+  void take_over(assembly::State& state) const override { commit(state); }
   void commit(assembly::State& state) const override {
     const auto initial = op_.initial;
     const auto gained = state.history[0];

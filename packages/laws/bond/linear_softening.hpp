@@ -45,12 +45,9 @@ struct SofteningBond {
   static std::vector<Quantity<SofteningBond>> quantities() {
     return {{"damage of bond", "-", "the part of its strengths that opening and slip have used up", damage},
             {"broken fraction", "-", "the damage of the bond", damage, "", "area broken"},
-            {"dissipation of bond", "J/m^2", "the energy per area that the damage of the bond has dissipated",
-             [](const SofteningBond& law, const Contact<Real>& at) {
-               const Real opened = law.used_by_opening(at), slid = law.used_by_slip(at), used = opened + slid;
-               return (opened * law.energy + slid * law.shear_energy) / (used > 1 ? used : 1);
-             },
-             "", "fracture energy"}};
+            {"energy of damage", "J/m^2", "G_I times the damage of the bond, dissipated by opening without slip",
+             [](const SofteningBond& law, const Contact<Real>& at) { return law.energy * damage(law, at); }, "",
+             "fracture energy"}};
   }
 
   template <class T>

@@ -73,11 +73,12 @@ std::vector<std::string> Flow::Warnings::of_input(const Setting& setting, const 
   const auto& [scene, mesh, start] = setting;
   if (!is_in(scene) || !Mechanics::is_in(scene)) return {};
   const auto wells = wells_in(scene, mesh.dim());
-  bool closed = std::all_of(wells.begin(), wells.end(), [](const auto& well) { return well.rate.has_value(); });
+  bool closed = is_zero(scene.flow->source) &&
+                std::all_of(wells.begin(), wells.end(), [](const auto& well) { return well.rate.has_value(); });
   for (const auto& [name, one] : scene.boundary_conditions) closed = closed && !one.pressure && !one.flux;
   for (const auto& [name, one] : scene.regions) closed = closed && !one.pressure;
   for (const auto& [name, one] : scene.fractures)
-    closed = closed && one.held_pressures.empty() && is_zero(one.leak_off);
+    closed = closed && one.held_pressures.empty() && is_zero(one.leak_off) && is_zero(one.source);
   const auto volumes = assembly::cell_volumes(mesh);
   const Real rock =
       base::sum_over_ranks(*mesh.comm, std::accumulate(volumes.begin(), volumes.begin() + mesh.n_owned_cells, Real(0)));

@@ -57,6 +57,24 @@ PressurePlaces places_on_fracture(const mesh::Mesh& mesh, const std::string& nam
   return places;
 }
 
+/// Corners of faces in the box of a held pressure; without any, the nearest cell. Collective.
+PressurePlaces places_in_box(const mesh::Mesh& mesh, const std::string& name, const HeldPressureSection& held) {
+  const auto &lower = held.lower_corner, &upper = held.upper_corner.empty() ? lower : held.upper_corner;
+  PressurePlaces places;
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
+    const auto& face = mesh.fracture_faces[f];
+    const Real rounding = 1e-6 * std::pow(face.area, Real(1) / (mesh.dim() - 1));
+    for (int k = 0; k < mesh::n_face_corners(mesh.shape) && mesh.fracture_names[face.fracture] == name; ++k) {
+      const auto x = mesh::face_corner(mesh, f, k);
+      bool within = true;
+      for (int i = 0; i < mesh.dim(); ++i)
+        within = within && x[i] >= lower[i] - rounding && x[i] <= upper[i] + rounding;
+      if (within) places.push_back({x, face.cell[0]});
+    }
+  }
+  return base::on_any_rank(*mesh.comm, !places.empty()) ? places : nearest_cell(mesh, lower);
+}
+
 /// Smallest principal compression, in 2D of the directions in the plane.
 Real smallest_compression(const std::vector<base::Expression>& stress, const mesh::Vector& x, int dim) {
   std::vector<Real> s;
@@ -108,7 +126,7 @@ std::vector<std::string> hydraulic_opening_doubts(const Setting& setting, const 
             places_on_fracture(mesh, name));
     for (const auto& [held, one] : fracture.held_pressures)
       compare(fmt::format("Fractures > {} > Held pressures > {} > \"pressure\"", name, held), one.pressure,
-              nearest_cell(mesh, one.lower_corner));
+              places_in_box(mesh, name, one));
   }
   return doubts;
 }

@@ -1,6 +1,7 @@
 // Flow in channels along intersections of fractures, compared with exact solutions.
 #include "boxes.hpp"
 
+#include "base/over_ranks.hpp"
 #include "mesh/facets.hpp"
 #include "mesh/intersections.hpp"
 
@@ -125,6 +126,31 @@ TEST(IntersectionFlow, AChannelStoresACompressibleFluid) {
     const Real differences = volume * c / (k * aperture / viscosity * dt);
     EXPECT_LT(error(model, "fracture pressure", [](const auto&, const auto&) { return Vector3{1}; }), 2 * differences)
         << cell;
+  }
+}
+
+/// A channel of a later stage is full of fluid at the present pressure: the pressure in a closed network remains.
+TEST(IntersectionFlow, AChannelThatIsAddedLaterChangesNoPressure) {
+  for (const std::string cell : solid_cells) {
+    auto scene = closed_box(cell);
+    scene.materials.at("rock").permeability = {0};
+    scene.flow->compressibility = 0.5;
+    for (auto& [name, fracture] : scene.fractures) fracture.source = 0.1;
+    model::Model model(scene, Tpetra::getDefaultComm());
+    ASSERT_TRUE(model.step_to(1).converged) << cell;
+    const auto mean = [&] {
+      Real sum = 0;
+      const auto output = model.output("fracture pressure");
+      for (const Real p : output.values) sum += p;
+      return base::sum_over_ranks(*model.mesh().comm, sum);
+    };
+    const Real before = mean();
+    EXPECT_GT(before, 0);
+    for (auto& [name, fracture] : scene.fractures) fracture.source = 0;
+    add_channel(scene, "channel", {"a", "b"}, 1);
+    model.change(scene);
+    ASSERT_TRUE(model.step_to(2).converged) << cell;
+    EXPECT_NEAR(mean() / before, 1, 1e-9) << cell;
   }
 }
 
