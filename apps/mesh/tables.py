@@ -166,7 +166,8 @@ class TitledColumns(Columns):
         for title, k in zip(shape, self.shape):
             self.check_unit(title, units[k])
         self.number = next((self.titles.index(title) for title in NUMBER if title in self.titles), None)
-        self.named = [(k, "name" if title == "name" else parted[k][0], units[k])
+        written = {one.lower(): one for one in entries}
+        self.named = [(k, "name" if title == "name" else written.get(parted[k][0].lower(), parted[k][0]), units[k])
                       for k, title in enumerate(self.titles) if title and title not in (*shape, *NUMBER)]
         if kind == "points":
             self.named = [one for one in self.named if self.titles[one[0]] not in ("z", "depth")]

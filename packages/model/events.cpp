@@ -16,7 +16,7 @@ using nlohmann::json;
 namespace {
 
 constexpr Real min_rate = 1e-2;  ///< smallest rate of change of an event / mean rate
-constexpr Real rounding = 1e-9;  ///< rounding error / largest integral
+constexpr Real rounding = 1e-9;  ///< rounding error / largest integral; / largest quantity of the unit of the mean
 
 struct Event {
   std::string fracture;
@@ -29,9 +29,9 @@ struct History {
   std::vector<std::vector<Real>> integrals, means;  ///< [step][fracture]
 
   std::size_t n_fractures() const { return integrals[0].size(); }
-  Real largest(std::size_t fracture) const {
+  static Real largest(const std::vector<std::vector<Real>>& rows, std::size_t fracture) {
     Real largest = 0;
-    for (const auto& row : integrals) largest = std::max(largest, std::abs(row[fracture]));
+    for (const auto& row : rows) largest = std::max(largest, std::abs(row[fracture]));
     return largest;
   }
 };
@@ -52,7 +52,7 @@ History history_of(const json& results, const std::string& integral, const std::
 /// Adds the events of fracture k.
 void add_events(const History& all, std::size_t k, const std::string& name, std::vector<Event>& events) {
   const auto& [times, integrals, means] = all;
-  const Real mean_rate = all.largest(k) / (times.back() - times.front());
+  const Real mean_rate = all.largest(integrals, k) / (times.back() - times.front());
   bool goes_on = false;
   for (std::size_t i = 1; i < times.size(); ++i) {
     const Real change = std::abs(integrals[i][k] - integrals[i - 1][k]);
@@ -68,12 +68,27 @@ void add_events(const History& all, std::size_t k, const std::string& name, std:
   }
 }
 
-std::vector<Event> events_of(const History& all, const json& fractures) {
+/// Largest absolute value of the maxima over fractures with a unit.
+Real largest_maximum(const json& results, const std::string& unit) {
   Real largest = 0;
-  for (std::size_t k = 0; k < all.n_fractures(); ++k) largest = std::max(largest, all.largest(k));
+  for (const auto& step : results["steps"]) {
+    const auto lists = step.find("single_fractures");
+    if (lists == step.end()) continue;
+    for (const auto& [name, list] : lists->items())
+      if (name.starts_with("max_") && results["units"].value(name, "") == unit)
+        for (const Real value : values_of(list)) largest = std::fmax(largest, std::abs(value));
+  }
+  return largest;
+}
+
+/// `scale`: a size of the means.
+std::vector<Event> events_of(const History& all, Real scale, const json& fractures) {
+  Real largest = 0;
+  for (std::size_t k = 0; k < all.n_fractures(); ++k) largest = std::max(largest, all.largest(all.integrals, k));
   std::vector<Event> events;
   for (std::size_t k = 0; k < all.n_fractures(); ++k)
-    if (all.largest(k) > rounding * largest) add_events(all, k, fractures[k]["name"], events);
+    if (all.largest(all.integrals, k) > rounding * largest && all.largest(all.means, k) > rounding * scale)
+      add_events(all, k, fractures[k]["name"], events);
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return std::tie(a.end, a.start) < std::tie(b.end, b.start); });
   return events;
@@ -94,7 +109,8 @@ std::string events_csv(const json& results, const std::vector<FractureColumn>& c
                           with_underscores(mean), results["units"][mean_key].get<std::string>(), column->name,
                           column->unit, derived.name, derived.unit, column->name, column->unit);
   Real sum = 0;
-  for (const auto& event : events_of(all, results["single_fractures"]))
+  const Real scale = largest_maximum(results, results["units"][mean_key]);
+  for (const auto& event : events_of(all, scale, results["single_fractures"]))
     text += fmt::format("{},{},{},{},{},{},{}\n", csv_cell(event.fracture), event.start / seconds, event.end / seconds,
                         event.mean, event.integral, derived.of({event.integral}).value_or(std::nan("")),
                         sum += event.integral);

@@ -45,7 +45,7 @@ class Runs(MeshTest):
                                'did you mean "friction coefficient"?\n')
 
     def test_number_in_place_of_a_word(self):
-        net = self.write("net.csv", "id,x0,y0,x1,y1,friction", "1,0.2,0.5,0.8,0.5,Coulomb", "2,0.2,0.6,0.8,0.6,0.5", "3,0.2,0.7,0.8,0.7,0.4")
+        net = self.write("net.csv", "id,x0,y0,x1,y1,Friction", "1,0.2,0.5,0.8,0.5,Coulomb", "2,0.2,0.6,0.8,0.6,0.5", "3,0.2,0.7,0.8,0.7,0.4")
         reported = self.mesh(self.scene(fractures={"set": {"file": "net.csv"}}), expect=1)
         self.assertIn(f'fracture 2 ({net}: line 3): "friction" is "0.5", must be one of "Coulomb", "Barton-Choubey"', reported)
         self.assertTrue(reported.endswith('; 1 more with such an error; did you mean the title "friction coefficient"?\n'), reported)

@@ -60,6 +60,17 @@ TEST(Events, DoNotDependOnTheNumberOfSteps) {
   }
 }
 
+/// Rounding errors alone, compared with other quantities of the same unit, have no event.
+TEST(Events, AreNotRoundingErrors) {
+  auto content = results({1, 2}, {{0, 1e-12}});
+  EXPECT_EQ(events_csv(content, columns(), 0), titles + "a,1,2,1e-13,1e-12,5e-13,1e-12\n");
+  content["units"]["max_opening"] = "m";
+  content["steps"][1]["single_fractures"]["max_opening"] = {-1e-3};
+  EXPECT_EQ(events_csv(content, columns(), 0), titles);
+  content["units"]["max_opening"] = "mm";
+  EXPECT_NE(events_csv(content, columns(), 0), titles);
+}
+
 TEST(Events, AreNoneWithoutChanges) {
   EXPECT_EQ(events_csv(results({1, 2}, {{0, 0}, {0, 0}}), columns(), 0), titles);
   EXPECT_EQ(events_csv(results({1}, {{1}}), {{"area", "", "m^2"}}, 0), "");
