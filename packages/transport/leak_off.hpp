@@ -13,8 +13,8 @@ namespace sprekk::transport {
 ///   dV/dt = s 8 C_L^2/V,   s = min(1, a/a_min)
 /// An open face, s = 1, loses V = 4 C_L sqrt(t - t_0) since its exposure at t_0, exactly in steps of any length. With a
 /// widening, s is that of the mechanical aperture a >= 0 without lower bound at the end of the step, and of the
-/// residual aperture a_min: closed faces lose no fluid. t_0 is the start of the run or of the stage; for bonded faces it is the middle
-/// of the step in which they open. Volumes are those at the reference pressure.
+/// residual aperture a_min: closed faces lose no fluid. t_0 is the start of the run or of the stage; for bonded faces,
+/// it is the middle of the step in which they open. Volumes are those at the reference pressure.
 ///
 /// The loss is added to the rows of "face pressure" like an increase of storage, so the balance is exact in all time
 /// schemes. Outputs: "leaked fluid" V (faces, m), its integral "leaked volume", and "exposure time" (V/4 C_L)^2 (faces,
