@@ -89,16 +89,11 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
   }
-  if (!earlier) {
-    auto memory = model_.system().memory();
-    memory.t = model_.time();
-    model_.system().resume(model_.state(), memory);
-  }
+  if (!earlier) add_initial_state();
   if (const auto& rule = model_.scene().output.events; rule && !mesh.fracture_names.empty()) {
     catalogue_.emplace(mesh, rule->rate, model_.time(), model_.system().outputs(model_.state()));
     if (earlier) catalogue_->resume(mesh, earlier->journal, earlier->faces);
   }
-  if (!earlier) add_initial_state();
   if (!probes_.empty()) start_probes(earlier);
   write_json();
 }
@@ -119,14 +114,22 @@ void Results::add_intersections() {
   if (base::on_any_rank(*mesh.comm, piece.n_cells() > 0)) fractures_->keep({"intersections", piece});
 }
 
-/// Adds the state before the first step, if the scene defines it.
+/// Adds the state before the first step, if the scene and its loads define it.
 void Results::add_initial_state() {
+  auto& system = model_.system();
+  auto memory = system.memory();
+  memory.t = model_.time();
   bool known = true;
   physics::for_each_physics([&](auto physics) { known = known && physics.has_initial_state(model_.scene()); });
-  if (!known) return;
   json initial = {{"time", model_.time()}};
-  add_fractures(initial, model_.system().outputs(model_.state()));
-  initial.update(reactions());
+  try {
+    system.resume(model_.state(), memory);
+    if (!known) return;
+    add_fractures(initial, system.outputs(model_.state()));
+    initial.update(reactions());
+  } catch (const Error&) {  // loads without a value at the start, perhaps with values in the steps
+    return;
+  }
   json_["initial"] = initial;
   sets_ = singles_ = {};  // no step yet
 }
