@@ -95,14 +95,21 @@ fuzz() {
 }
 
 # make_viewer FILE: bundles apps/report/viewer.js with vtk.js in the versions of package-lock.json, unless FILE is
-# up to date. The first call needs npm and its registry.
+# up to date. The first call needs npm and its registry. Simultaneous calls wait for each other.
 make_viewer() {
   local folder=$build/report source=$root/apps/report input
   input=$(cat "$source"/{package.json,package-lock.json,viewer.js} | sha256sum)
-  if [[ -f $1 && $(cat "$folder/input" 2>/dev/null) == "$input" ]]; then return 0; fi
-  rm -f "$1"
+  if is_bundled "$1"; then return 0; fi
   command -v npm >/dev/null || install_missing "${viewer_packages[@]}"
-  mkdir -p "$folder" && cp "$source"/{package.json,package-lock.json,viewer.js} "$folder" || return
+  mkdir -p "$folder" || return
+  { flock 9 && { is_bundled "$1" || bundle_viewer "$1" 9>&-; }; } 9<"$folder"
+}
+
+is_bundled() { [[ -f $1 && $(cat "$folder/input" 2>/dev/null) == "$input" ]]; }
+
+bundle_viewer() {
+  rm -f "$1"
+  cp "$source"/{package.json,package-lock.json,viewer.js} "$folder" || return
   say "bundling the 3D view of reports"
   (cd "$folder" && timeout 300 npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 &&
     node_modules/.bin/esbuild viewer.js --bundle --minify --target=es2020 --log-level=warning --outfile="$1.part" &&

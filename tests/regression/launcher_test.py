@@ -193,6 +193,24 @@ class Launcher(ProgramTest):
         with run:
             self.assertEqual(run.wait(timeout=program.TIME_LIMIT), 0)
 
+    def test_two_first_reports(self):
+        """Both calls bundle the view, one after the other; the second finds the file of the first."""
+        folder = self.folder / "apps/report"
+        folder.mkdir()
+        for name in ("package.json", "package-lock.json", "viewer.js"):
+            shutil.copy(ROOT / "apps/report" / name, folder)
+        (folder / "__main__.py").write_text("import pathlib, sys\nprint(pathlib.Path(sys.argv[2]).read_text())\n")
+        npm = self.folder / "stubs/npm"
+        npm.write_text("#!/usr/bin/env bash\nmkdir node_modules && sleep 1 && mkdir node_modules/.bin && echo called >>calls\n"
+                       "printf '#!/bin/sh\\necho bundle >${6#*=}\\n' >node_modules/.bin/esbuild && chmod +x node_modules/.bin/esbuild\n")
+        npm.chmod(0o755)
+        calls = [subprocess.Popen(["./sprekk", "report", "out"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, **self.surroundings)
+                 for _ in range(2)]
+        for call in calls:
+            out, err = call.communicate(timeout=program.TIME_LIMIT)
+            self.assertEqual((call.returncode, out), (0, "bundle\n\n"), err)
+        self.assertEqual((self.folder / "build/report/calls").read_text(), "called\n")
+
     def test_log_and_quiet(self):
         for ranks in ("1", "2"):
             for words, n in (([], 1), (["--quiet"], 0)):
