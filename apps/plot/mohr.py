@@ -76,7 +76,7 @@ def draw_circles(ax, principal, traction):
 def draw_envelopes(ax, joints, traction, largest):
     """Draws one line for each distinct strength of the joints {name: entries} up to the largest compression.
 
-    Names joints with other laws."""
+    Names joints with other laws. Returns the strengths at half of this compression."""
     normal, names, unknown = np.linspace(0, largest, 200), {}, []
     for name, joint in joints.items():
         bound = strength(joint, normal)
@@ -94,6 +94,7 @@ def draw_envelopes(ax, joints, traction, largest):
         )
     if unknown:
         ax.plot([], [], linestyle="", label=f"strength not drawn: {listed(unknown)}")
+    return [float(np.interp(0.5 * largest, normal, bound)) for bound in list(names)[:MAX_ENVELOPES]]
 
 
 def listed(names):
@@ -166,10 +167,10 @@ def of_step(rock, joints, scene, title, content, time):
         ax.plot(*(traction(values[-1:]) for values in path), "s", markersize=4, color=line["color"])
         highest.append(np.max(path[1]))
     largest = max([np.max(normal, initial=0), np.max(principal, initial=0), *(np.max(path[0]) for path in paths.values())])
-    draw_envelopes(ax, joints_of(scene, content), traction, 1.05 * largest)
+    strengths = draw_envelopes(ax, joints_of(scene, content), traction, 1.05 * largest)
     ax.axvline(0, color=FAINT, linewidth=0.6, zorder=1)
-    top = traction(max(highest))
-    ax.set_ylim(-0.02 * (top or 1), 1.25 * (top or 1))
+    top = traction(max(1.25 * max(highest), *strengths)) if strengths else 1.25 * traction(max(highest))
+    ax.set_ylim(-0.016 * (top or 1), top or 1)  # half of each line of strength, or more, is visible
     ax.set(xlabel=traction.label, ylabel=f"shear traction ({traction.unit})")
     ax.legend(loc="upper left", bbox_to_anchor=(1, 1))
     return figure

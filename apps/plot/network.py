@@ -59,9 +59,7 @@ class Network:
         if len(order) > MAX_NAMES:
             order = [k for k in order if largest[k] > 1e-3 * largest[order[0]]]
         named = [(self.names[k], self.places[k]) for k in order if len(self.places[k])][:MAX_NAMES]
-        above = [0, 0.045 * np.ptp(space.frame(self.bounds), axis=1).max()]
-        wells = [(name, space.flat(well[:1]) + above) for name, well in self.wells.items()]
-        space.write_names(ax, wells + named, self.bounds)
+        space.write_names(ax, named, self.bounds, self.wells)
 
     def note(self):
         """Returns the remark on the region and on hidden fractures."""

@@ -7,11 +7,23 @@ SMALL = 0.5  # largest region / whole, for a picture of the region only
 ROOM = 0.5  # margin of the region / its size
 
 
-def place_of_name(name, places, extent, taken):
-    """Returns the first place where the name overlaps no other, and the half size of the name; or None.
+def half_size(name, extent):
+    """Returns half the width and height of a name: a letter is about 1/60 as wide as the map, and 1/28 high."""
+    return 0.5 * np.asarray(extent) * (len(name) / 60, 1 / 28)
 
-    `taken` are such pairs. A letter is about 1/60 as wide as the map, and 1/28 high."""
-    half = 0.5 * np.asarray(extent) * (len(name) / 60, 1 / 28)
+
+def beside(points, name, extent):
+    """Returns places for the name of a line next to its box: above, right, left, below."""
+    low, high, half = points.min(axis=0), points.max(axis=0), half_size(name, extent)
+    middle, away = 0.5 * (low + high), 0.5 * (high - low) + 1.5 * half
+    return middle + away * np.array([[0, 1], [1, 0], [-1, 0], [0, -1]])
+
+
+def place_of_name(name, places, extent, taken):
+    """Returns the first place where the name overlaps nothing, and the half size of the name; or None.
+
+    `taken` are such pairs of other names and of marks."""
+    half = half_size(name, extent)
     for place in places:
         if all(np.any(abs(place - other) > half + size) for other, size in taken):
             return place, half

@@ -56,7 +56,25 @@ def change(values):
     return np.nanmax(values) - np.nanmin(values)
 
 
-def draw(ax, times, label, base, curves, looks):
+def leave_out_start(ax, curves):
+    """Limits the axis to the values after the first one, if these would use less than a third of it. Curves from zero to
+    a nearly constant value have such a range. A note in the panel contains the first values."""
+    later = np.concatenate([values[1:] for values in curves])
+    later, first = later[np.isfinite(later)], np.array([values[0] for values in curves])
+    first = first[np.isfinite(first)]
+    if not first.size or later.size <= len(curves):
+        return
+    low, high = later.min(), later.max()
+    whole = max(high, first.max()) - min(low, first.min())
+    if 3 * (high - low) >= whole or high - low <= NOISE * max(abs(low), abs(high)):
+        return
+    room = 0.08 * (high - low)
+    ax.set_ylim(low - room, high + room)
+    ends = f"{first.min():.3g}" if np.ptp(first) <= NOISE * whole else f"{first.min():.3g} to {first.max():.3g}"
+    ax.annotate(f"starts at {ends}, outside", (0.01, 0.03), xycoords="axes fraction", fontsize=7, color=FAINT)
+
+
+def draw(ax, times, label, base, curves, looks, over_time):
     """Draws the curves with the largest changes in colour, the others thin. `looks` {name: look} of former panels."""
     quantity = Quantity(label, base, *curves.values()) if base else None
     names = list(curves)
@@ -74,18 +92,20 @@ def draw(ax, times, label, base, curves, looks):
             ax.plot(times, values, color=FAINT, linewidth=0.5, zorder=1)
     if len(names) > len(shown):
         ax.plot([], [], color=FAINT, linewidth=0.5, label=f"{len(names) - len(shown)} others")
+    if over_time and base in ("Pa", "K"):  # without a natural zero
+        leave_out_start(ax, [line.get_ydata() for line in ax.lines if len(line.get_ydata()) > 1])
     ax.set_ylabel(quantity.label if quantity else label)
     if len(names) > 1:
         ax.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize=7)
 
 
-def figure_of(title, times, name, content):
-    """Returns the figure with a panel for each entry of the content and a common time axis."""
+def figure_of(title, times, name, content, over_time=True):
+    """Returns the figure with a panel for each entry of the content and a common axis of times, or of other values."""
     figure, axes = plt.subplots(len(content), 1, sharex=True, squeeze=False, figsize=(7.4, 0.6 + 2.1 * len(content)))
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     looks = {}  # a name has one look in all panels
     for ax, (label, base, curves) in zip(axes.flat, content):
-        draw(ax, times, label, base, curves, looks)
+        draw(ax, times, label, base, curves, looks, over_time)
     axes[-1, 0].set_xlabel(f"time ({name})")
     figure.align_ylabels()
     return figure
@@ -125,8 +145,13 @@ def probe(path):
     return [(title["name"], title["unit"], column) for title, column in zip(titles, values.T)]
 
 
-def panel(name, symbol, curves):
-    """Returns a panel for figure_of(). Units without prefixes are part of the name."""
+def panel(symbol, curves):
+    """Returns a panel for figure_of(). Its label is the name of a single curve, the words that all names have in
+    common, or the names. Units without prefixes are part of the label."""
+    symbol = symbol.replace("^2", "²").replace("^3", "³").replace("*", " ")
+    names = [name.split() for name in curves]
+    common = " ".join(word for word in names[0] if all(word in other for other in names))
+    name = common or (", ".join(curves) if len(curves) <= 3 else f"{', '.join(list(curves)[:3])}, ...")
     return (name, symbol, curves) if symbol in PREFIXES else (f"{name} ({symbol})", "", curves)
 
 
@@ -139,14 +164,12 @@ def of_probe(path):
     wanted = None if clock_name == "s" else (1, clock_name)
     if len(columns) > 1 and columns[1][0] == "distance":
         last = times == times[-1]
-        content = [panel(name, symbol, {name: values[last]}) for name, symbol, values in columns[2:] if name not in "xyz"]
-        figure = figure_of(f"{path.stem}, {when(times[-1], wanted)}", columns[1][2][last], "", content)
+        content = [panel(symbol, {name: values[last]}) for name, symbol, values in columns[2:] if name not in "xyz"]
+        figure = figure_of(f"{path.stem}, {when(times[-1], wanted)}", columns[1][2][last], "", content, over_time=False)
         figure.axes[-1].set_xlabel("distance (m)")
         return figure
     groups = {}
     for name, symbol, values in columns[1:]:
         groups.setdefault(symbol, {})[name] = values
-    content = [
-        panel(next(iter(curves)) if len(curves) == 1 else "values", symbol, curves) for symbol, curves in groups.items()
-    ]
+    content = [panel(symbol, curves) for symbol, curves in groups.items()]
     return figure_of(path.stem, *clock(times, wanted), content)

@@ -10,7 +10,7 @@ import numpy as np
 import read
 from matplotlib import patheffects
 from matplotlib.colors import to_rgb
-from places import place_of_name
+from places import beside, place_of_name
 from read import PlotError
 from style import FAINT, INK, LINES, NOISE, plt
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -292,6 +292,12 @@ def write_coordinates(ax, k, ends, size, middle):
     )
 
 
+def along(line, n=20):
+    """Returns n points on each segment of a line, and its end."""
+    parts = np.arange(n)[:, None] / n
+    return np.concatenate([a + parts * (b - a) for a, b in zip(line[:-1], line[1:])] + [line[-1:]])
+
+
 def draw_wells(ax, wells):
     """Draws wells, {name: points}, in front of all faces, with a dot at the first point."""
     white = [patheffects.withStroke(linewidth=3, foreground="white")]
@@ -300,12 +306,18 @@ def draw_wells(ax, wells):
         ax.plot(*flat(points[:1]).T, "o", color=WELL, markersize=3.5, path_effects=white)
 
 
-def write_names(ax, named, bounds):
-    """Writes names, [(name, visible places)], the first ones first, without overlap."""
-    taken, extent = [], np.full(2, 1.5 * np.ptp(frame(bounds), axis=1).max())
+def write_names(ax, named, bounds, wells):
+    """Writes names of wells, {name: points}, and of fractures, [(name, visible places)], the first ones first. Names
+    cover neither each other nor wells."""
+    extent = np.full(2, 1.5 * np.ptp(frame(bounds), axis=1).max())
+    lines = {name: flat(points) for name, points in wells.items()}
+    taken = [(part, np.full(2, 0.004 * extent[0])) for line in lines.values() for part in along(line)]
+    tried = [(name, beside(line, name, extent)) for name, line in lines.items()]
     for name, places in named:
         order = np.argsort(np.linalg.norm(places - np.mean(places, axis=0), axis=1), kind="stable")
-        found = place_of_name(name, places[order[:: max(1, len(order) // MAX_PLACES)]], extent, taken)
+        tried.append((name, places[order[:: max(1, len(order) // MAX_PLACES)]]))
+    for name, places in tried:
+        found = place_of_name(name, places, extent, taken)
         if found:
             taken.append(found)
             text = ax.text(*found[0], name, fontsize=7, ha="center", va="center")

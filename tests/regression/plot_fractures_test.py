@@ -169,6 +169,15 @@ class Fractures(PlotTest):
         self.assertEqual(labels, ["strength of a, k, l and 1 more", *(f"strength of {name}" for name in "bcdefgh"), "strength not drawn: n, i, j"])
         self.assertEqual(len({(line.get_color(), str(line._dash_pattern)) for line in ax.lines[:-1]}), 8)
 
+    def test_strength_far_above_the_stress_is_visible(self):
+        """Half of the line of strength is inside of the diagram."""
+        self.run_scene("verification/crossing_2d.xml", "Time.end=1", "Time.steps=1", "Tables.tangential.values={0, 1e-4, 0, 0, 0}",
+                       "Materials.joint.friction coefficient=40")
+        ax = self.figures("out")["mohr"].axes[0]
+        (line,) = [line for line in ax.lines if line.get_label().startswith("strength of")]
+        x, y = line.get_data()
+        self.assertGreaterEqual(ax.get_ylim()[1], (1 - 1e-9) * np.interp(0.5 * x[-1], x, y))
+
     def test_slip_tendency(self):
         """Shear over compression; NaN on open faces, in tension and for round-off; zero if the shear is round-off."""
         traction = np.array([[-2.0, 1, 0], [-2, 0, -3], [0, 0, 0], [1, 1, 0], [-1e-14, 1, 0], [-5, 1e-10, 0]])

@@ -126,7 +126,7 @@ class Numbers(PlotTest):
         path = self.folder / "gauge.csv"
         path.write_text("time [d],pressure [Pa],mean slip [m],maximum slip [m]\n1,2e6,1e-3,2e-3\n2,3e6,2e-3,5e-3\n")
         axes = series.of_probe(path).axes
-        self.assertEqual([ax.get_ylabel() for ax in axes], ["pressure (MPa)", "values (mm)"])
+        self.assertEqual([ax.get_ylabel() for ax in axes], ["pressure (MPa)", "slip (mm)"])
         self.assertEqual(axes[-1].get_xlabel(), "time (d)")
         self.assertEqual([line.get_ydata().tolist() for line in axes[1].lines], [[1, 2], [2, 5]])
         path.write_text("time [s],slip [m]\n0,0\n36000,1\n")
@@ -139,6 +139,26 @@ class Numbers(PlotTest):
         self.assertEqual([ax.lines[0].get_xdata().tolist(), ax.lines[0].get_ydata().tolist()], [[0, 1], [3, 4]])
         path.write_text("a,b\n")
         self.assertRaises(read.PlotError, series.of_probe, path)
+
+    def test_labels_of_probes(self):
+        """The label has the words that all names have in common, or the names, and the unit as in other pictures."""
+        path = self.folder / "gauge.csv"
+        for titles, label in (("rate [m^2/s],rate in rock [m^2/s]", "rate (m²/s)"), ("rate [m^3/s],loss [m^3/s]", "rate, loss (m³/s)"),
+                              ("a [N*m],b [N*m],c [N*m],d [N*m]", "a, b, c, ... (N m)"), ("leaked volume [m^3]", "leaked volume (m³)")):
+            n = titles.count(",") + 1
+            path.write_text(f"time [s],{titles}\n0{n * ',1'}\n1{n * ',2'}\n")
+            self.assertEqual([ax.get_ylabel() for ax in series.of_probe(path).axes], [label])
+
+    def test_level_after_the_first_step(self):
+        """The axis of a pressure that rises at once shows the later values; that of a ramp starts at the first value."""
+        path = self.folder / "gauge.csv"
+        for values, low in (((0, 12, 10.4, 10.2), 10), ((0, 4, 8, 12), None)):
+            path.write_text("time [s],pressure [Pa]\n" + "".join(f"{t},{p}e6\n" for t, p in enumerate(values)))
+            (ax,) = series.of_probe(path).axes
+            notes = [text.get_text() for text in ax.texts]
+            self.assertEqual((ax.get_ylim()[0] > 10, notes), (low is not None, ["starts at 0, outside"] if low else []))
+        path.write_text("time [s],distance [m],pressure [Pa]\n" + "".join(f"1,{x},{p}e6\n" for x, p in enumerate((0, 12, 10.4, 10.2))))
+        self.assertLess(series.of_probe(path).axes[0].get_ylim()[0], 0)
 
     def test_magnitudes(self):
         """The b-value of a known sample is correct within three standard errors, and absent for few fractures."""

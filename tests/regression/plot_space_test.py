@@ -166,6 +166,20 @@ class Space(PlotTest):
         names = {text.get_text() for text in ax.texts[drawn:]} | set(view.hidden)
         self.assertEqual(names, {"well", *(one["name"] for one in singles)})
 
+    def test_names_do_not_cover_wells(self):
+        """A well through the middle of a fracture: neither its name nor that of the fracture is on it."""
+        bounds = np.array([[0.0, 0, 0], [10, 10, 10]])
+        well = np.array([[5.0, 5, 4], [5, 5, 6]])
+        on = np.array([[x, 5.0, z] for x in np.linspace(2, 8, 9) for z in np.linspace(2, 8, 9)])
+        figure, ax = style.plt.subplots()
+        space.write_names(ax, [("fracture", space.flat(on))], bounds, {"well": well})
+        texts = {text.get_text(): np.array(text.get_position()) for text in ax.texts}
+        self.assertEqual(set(texts), {"well", "fracture"})
+        extent = np.full(2, 1.5 * np.ptp(space.frame(bounds), axis=1).max())
+        for name, place in texts.items():
+            apart = np.abs(space.along(space.flat(well)) - place) > places.half_size(name, extent)
+            self.assertTrue(np.all(np.any(apart, axis=1)), name)
+
     def test_walls_of_an_excavation(self):
         """A tunnel through a body of 5 x 5 x 5 cells has walls, drawn with the fracture, and edges at its ends."""
         cells = [(i, j, k) for i in range(5) for j in range(5) for k in range(5) if (i, k) != (2, 2)]
