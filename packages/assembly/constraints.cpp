@@ -222,12 +222,12 @@ std::vector<Real> prescribed_values(const Constrained& constrained, const std::v
     const int condition = constrained.entries[number].condition;
     found.try_emplace(
         {condition, entry.condition, entry.component},
-        fmt::format(
-            "{} \"{}\" and \"{}\" prescribe {} and {} for component {} of {} at ({}, {}, {}), t = {}; where they meet "
-            "they must agree or leave the component free",
-            conditions[condition].boundary < 0 ? "conditions" : "boundary conditions", conditions[condition].name,
-            conditions[entry.condition].name, first, second, "xyz"[entry.component], conditions[condition].field,
-            entry.x[0], entry.x[1], entry.x[2], t));
+        fmt::format("{} \"{}\" and \"{}\" prescribe {:.6g} and {:.6g} for component {} of {} at ({:.6g}, {:.6g}, "
+                    "{:.6g}), t = {:.6g}; where they meet "
+                    "they must agree or leave the component free",
+                    conditions[condition].boundary < 0 ? "conditions" : "boundary conditions",
+                    conditions[condition].name, conditions[entry.condition].name, first, second, "xyz"[entry.component],
+                    conditions[condition].field, entry.x[0], entry.x[1], entry.x[2], t));
   }
   for (const auto& [place, conflict] : found) conflicts.push_back(conflict);
   return values;

@@ -38,9 +38,19 @@ void entry_of_place(Section& s, T& target, const std::string& name, const std::s
 inline Real value_at(const std::string& name, const Expression& value, const Bounds& bounds,
                      const std::array<Real, 3>& x) {
   const Real v = value(x, 0);
-  SPREKK_CHECK(value.is_constant() || bounds.contains(v), "\"{}\" = {} is {} at ({}, {}, {}), must be {}", name,
-               shortened(value.text()), v, x[0], x[1], x[2], bounds.text());
+  SPREKK_CHECK(value.is_constant() || bounds.contains(v),
+               "\"{}\" = {} is {:.6g} at ({:.6g}, {:.6g}, {:.6g}), must be {}", name, shortened(value.text()), v, x[0],
+               x[1], x[2], bounds.text());
   return v;
+}
+/// The same for an entry of a section. Errors contain its location, "SCENE: Sprekk > SECTION".
+inline Real value_at(const std::string& location, const std::string& name, const Expression& value,
+                     const Bounds& bounds, const std::array<Real, 3>& x) {
+  try {
+    return value_at(name, value, bounds, x);
+  } catch (const Error& error) {
+    throw Error(location + ": " + error.what());
+  }
 }
 
 }  // namespace sprekk::base

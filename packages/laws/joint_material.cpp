@@ -84,7 +84,7 @@ void JointMaterial::check(const Point& x) const {
   const auto check_value = [&](const std::string& name, const Value& value, const base::Bounds& bounds) {
     if (value.is_constant()) return;  // checked when it was read
     const Real v = value(x, 0);
-    SPREKK_CHECK(bounds.contains(v), "\"{}\" = {} is {} at ({}, {}, {}), must be {}", name,
+    SPREKK_CHECK(bounds.contains(v), "\"{}\" = {} is {:.6g} at ({:.6g}, {:.6g}, {:.6g}), must be {}", name,
                  base::shortened(value.text()), v, x[0], x[1], x[2], bounds.text());
   };
   for_each_given(*this, [&](const Entry& entry, const Value& value) { check_value(entry.name, value, entry.bounds); });

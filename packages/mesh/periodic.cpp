@@ -60,16 +60,17 @@ void tie_faces(const GlobalMesh& mesh, const std::pair<std::string, std::string>
   for (const auto& face : second) {
     const Vector centre = face_centre(mesh, face.cell, face.local_face);
     const auto* other = partner(centre - shift);
-    SPREKK_CHECK(other, "periodic: the face of \"{}\" at ({}, {}, {}) has no partner on \"{}\"", names.second,
-                 centre[0], centre[1], centre[2], names.first);
+    SPREKK_CHECK(other, "periodic: the face of \"{}\" at ({:.6g}, {:.6g}, {:.6g}) has no partner on \"{}\"",
+                 names.second, centre[0], centre[1], centre[2], names.first);
     const auto nodes = nodes_of_face(mesh, face.cell, face.local_face),
                others = nodes_of_face(mesh, other->cell, other->local_face);
     for (int k = 0; k < n; ++k) {
       const Vector x = point(mesh, nodes[k]) - shift;
       const auto match = std::find_if(others.begin(), others.begin() + n,
                                       [&](GlobalIndex node) { return norm(point(mesh, node) - x) < 1000 * tolerance; });
-      SPREKK_CHECK(match != others.begin() + n, "periodic: the node of \"{}\" at ({}, {}, {}) has no partner on \"{}\"",
-                   names.second, x[0] + shift[0], x[1] + shift[1], x[2] + shift[2], names.first);
+      SPREKK_CHECK(match != others.begin() + n,
+                   "periodic: the node of \"{}\" at ({:.6g}, {:.6g}, {:.6g}) has no partner on \"{}\"", names.second,
+                   x[0] + shift[0], x[1] + shift[1], x[2] + shift[2], names.first);
       ties.join(nodes[k], *match);
     }
   }

@@ -183,7 +183,8 @@ std::vector<transport::FluxCondition> flux_conditions(const Scene& scene, const 
                           .value = flux ? *flux : *(one.*entries.beyond),
                           .coefficient = coefficient,
                           .region = one.region ? base::index_of(mesh.region_names, *one.region) : -1,
-                          .fracture = one.fracture ? base::index_of(mesh.fracture_names, *one.fracture) : -1});
+                          .fracture = one.fracture ? base::index_of(mesh.fracture_names, *one.fracture) : -1,
+                          .location = fmt::format("{}: Sprekk > Boundary conditions > {}", scene.origin, name)});
   }
   return conditions;
 }

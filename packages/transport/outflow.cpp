@@ -15,9 +15,9 @@ bool Outflow::constant_in_time() const {
 
 void Outflow::add(std::size_t condition, LocalIndex row, Real area, const std::array<Real, 3>& x) {
   points_.push_back({condition, row, area, x});
-  const auto& coefficient = conditions_[condition].coefficient;
-  if (!coefficient) return;
-  exchange_.add(row, area * value_at(names_.coefficient, *coefficient, base::at_least(0), x));
+  const auto& [boundary, value, coefficient, region, fracture, location] = conditions_[condition];
+  if (coefficient)
+    exchange_.add(row, area * base::value_at(location, names_.coefficient, *coefficient, base::at_least(0), x));
 }
 
 void Outflow::bind(const assembly::Context& context, int block, const laws::Fluid& fluid) {
@@ -55,7 +55,7 @@ void Outflow::totals(const assembly::State& state, const mesh::Mesh& mesh, std::
     totals.push_back({{names_.inflows, mesh.boundary_names[one.boundary]}, 0, names_.unit});
   for (const auto& [number, row, area, x] : points_) {
     if (row >= n_owned_) continue;
-    const auto& [boundary, value, coefficient, region, fracture] = conditions_[number];
+    const auto& [boundary, value, coefficient, region, fracture, location] = conditions_[number];
     const Real beyond = value(x, state.t), h = coefficient ? (*coefficient)(x, 0) : 0;
     totals[first + number].value -= area * (coefficient ? h * fluid_.drop(u(row), beyond, 0) : beyond);
     if (const auto of_row = unbalanced.find(row); h > 0 && of_row != unbalanced.end())

@@ -20,8 +20,9 @@ struct FluxCondition {
   int boundary;
   base::Expression value;
   std::optional<base::Expression> coefficient = {};
-  int region = -1;    ///< only faces of cells of this region; -1: all
-  int fracture = -1;  ///< only ends of this fracture, with the area length times aperture; -1: rock
+  int region = -1;            ///< only faces of cells of this region; -1: all
+  int fracture = -1;          ///< only ends of this fracture, with the area length times aperture; -1: rock
+  std::string location = "";  ///< of its section in the scene, for errors
 };
 
 struct OutflowNames {

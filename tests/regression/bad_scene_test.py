@@ -289,6 +289,18 @@ class Scenes(BadInput):
         self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
         self.refuse_set(['"fracture": not available with "displacement", "traction", "confining pressure" and "foundation stiffness"'], "Boundary conditions.moved.fracture=fracture")
 
+    def test_values_at_places(self):
+        """Messages about values of expressions contain the section and readable numbers."""
+        leak_off = self.scene("growth/leak_off_2d.xml")
+        self.refuse(['Sprekk > Fractures > growing: "leak-off coefficient" = 1e-6*(x - 1) is -', ", must be at least 0"], "run", leak_off,
+                    "--set", "Fractures.growing.leak-off coefficient=1e-6*(x - 1)", any_point=True)
+        west = "Boundary conditions.west."
+        self.refuse(['Sprekk > Boundary conditions > west: "conductance" = -1e-12*y is -', ", must be at least 0"], "run",
+                    self.scene("flow/network_2d.xml"), "--set", west + "conductance=-1e-12*y", any_point=True)
+        err = self.refuse(['bonded joint > "residual aperture": must be above 0'], "check", leak_off, "--set",
+                          "Materials.bonded joint.residual aperture=0")
+        self.assertEqual(err.count("aperture"), 1)
+
     def test_flow_in_fractures_of_impermeable_rock(self):
         def refuse(expected, scene, *sets):
             self.refuse(expected, "check", self.scene(scene), *(word for entry in sets for word in ("--set", entry)))

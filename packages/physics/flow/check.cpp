@@ -41,14 +41,18 @@ void compare_fractures(Comparison& c) {
     if (!joint || !c.is_sound("Flow")) continue;
     if (has_fluid(scene) && !is_zero(fracture.fluid_pressure))
       c.fail("Fractures > " + name + " > \"fluid pressure\"", "is computed, not given, with \"Flow\"");
-    if (scene.flow && is_zero(joint->initial_aperture) && is_zero(joint->residual_aperture))
-      c.fail("Materials > " + fracture.material + " > \"initial aperture\"",
-             "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
+    const bool leaks = !is_zero(fracture.leak_off) && Mechanics::is_in(scene),
+               bonded = fracture.unbroken && Mechanics::is_in(scene);  // then also required by compare_unbroken()
+    if (scene.flow && is_zero(joint->residual_aperture) && !bonded) {
+      if (leaks)
+        c.fail("Materials > " + fracture.material + " > \"residual aperture\"", "must be above 0 with leak-off");
+      else if (is_zero(joint->initial_aperture))
+        c.fail("Materials > " + fracture.material + " > \"initial aperture\"",
+               "is 0, and so is \"residual aperture\"; with \"Flow\" one must be above 0");
+    }
     if (!is_zero(fracture.leak_off) && scene.flow && flows_in_rock(scene))
       c.fail("Fractures > " + name + " > \"leak-off coefficient\"",
              "needs rock with the \"permeability\" 0; fluid leaks into other rock by flow");
-    if (!is_zero(fracture.leak_off) && Mechanics::is_in(scene) && is_zero(joint->residual_aperture))
-      c.fail("Materials > " + fracture.material + " > \"residual aperture\"", "must be above 0 with leak-off");
     if (scene.flow && !Mechanics::is_in(scene))  // else mechanics reports all missing entries
       for (const auto& [entry, what] : joint->missing("hydraulic aperture"))
         c.fail(fmt::format("Materials > {} > \"{}\"", fracture.material, entry), what);

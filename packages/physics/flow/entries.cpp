@@ -34,7 +34,7 @@ bool Flow::Rock::is_impermeable() const { return permeability.size() == 1 && is_
 transport::Capacity Flow::Rock::capacity(Real of_fluid, const std::array<Real, 3>& x) const {
   const Real room = value_at("porosity", porosity, base::between(0, 1), x), minimum = room * of_fluid;
   if (!biot_modulus) return {.room = room, .growth = compressibility.value_or(0)};
-  const auto here = porosity.is_constant() ? "" : fmt::format(" at ({}, {}, {})", x[0], x[1], x[2]);
+  const auto here = porosity.is_constant() ? "" : fmt::format(" at ({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
   SPREKK_CHECK(minimum <= (1 + 1e-12) / *biot_modulus,
                "\"Biot modulus\": is {:.6g} Pa, must not be above {:.6g} Pa{}, the value of \"porosity\" and "
                "\"compressibility\" of the fluid without compressibility of pores",

@@ -39,7 +39,7 @@ transport::FractureFlowParameters::Face hydraulics(const Material& joint, Real v
              a = std::max(aperture, residual),
              of_iterates = opening ? part * std::max(Real(0), aperture + opening->least) : 0;
   SPREKK_CHECK(a > 0,
-               "the hydraulic aperture is 0 at ({}, {}, {}), must be above 0: give an \"initial aperture\" "
+               "the hydraulic aperture is 0 at ({:.6g}, {:.6g}, {:.6g}), must be above 0: give an \"initial aperture\" "
                "or a \"residual aperture\"",
                x[0], x[1], x[2]);
   const auto& given = joint.tangential_permeability;
@@ -106,8 +106,10 @@ std::vector<transport::FractureFlowParameters::Face> hydraulics(const Setting& s
         return is_unbroken(scene, mesh, face) ? hydraulics_of_bonded(joint, scene.flow->viscosity, face.centre)
                                               : hydraulics(joint, scene.flow->viscosity, starts[f], face.centre);
       }));
-      const auto& leak_off = scene.fractures.at(mesh.fracture_names[face.fracture]).leak_off;
-      faces.back().leak_off = value_at("leak-off coefficient", leak_off, base::at_least(0), face.centre);
+      const auto& name = mesh.fracture_names[face.fracture];
+      faces.back().leak_off =
+          value_at(fmt::format("{}: Sprekk > Fractures > {}", scene.origin, name), "leak-off coefficient",
+                   scene.fractures.at(name).leak_off, base::at_least(0), face.centre);
     }
   });
   return faces;
