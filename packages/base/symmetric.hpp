@@ -3,7 +3,9 @@
 
 #include "base/types.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace sprekk::base {
 
@@ -29,5 +31,16 @@ struct Symmetric {
     return result;
   }
 };
+
+/// Returns the largest eigenvalue of a symmetric tensor XX, YY, ZZ, XY[, YZ, XZ].
+template <class Tensor>
+Real largest_principal(const Tensor& s) {
+  const Real xy = s[3], yz = s.size() > 4 ? s[4] : 0, xz = s.size() > 4 ? s[5] : 0;
+  const Real mean = (s[0] + s[1] + s[2]) / 3, a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
+  const Real p = std::sqrt((a * a + b * b + c * c + 2 * (xy * xy + yz * yz + xz * xz)) / 6);
+  if (p == 0) return mean;
+  const Real det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+  return mean + 2 * p * std::cos(std::acos(std::clamp(det / (2 * p * p * p), Real(-1), Real(1))) / 3);
+}
 
 }  // namespace sprekk::base

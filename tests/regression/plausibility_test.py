@@ -91,6 +91,23 @@ class Plausibility(ProgramTest):
             err = self.warnings(channels, "Mesh.fractures.east joint.upper corner={70, 40, 0}", ranks=ranks)
             self.assertIn('Flow > Intersections > shaft: its "fractures" do not meet: the channel has no effect', err)
 
+    def test_leak_off(self):
+        """A coefficient above that of any rock, the largest of an expression."""
+        scene = self.scene("growth/leak_off_2d.xml")
+        for value, expected in (("1", 1), ("1e-2*x/7", None), ("1e-5", None), ("1e-2*(1 + (x > 3))", 0.02)):
+            for ranks in (1, 2):
+                err = self.warnings(scene, f"Fractures.growing.leak-off coefficient={value}", ranks=ranks)
+                self.assertEqual("rock has 1e-6 to 1e-3 m/s^0.5; check the unit" in err, expected is not None, err)
+                if expected:
+                    self.assertIn(f'Fractures > growing > "leak-off coefficient": reaches {expected:g} m/s^0.5', err)
+
+    def test_opening_by_a_rate(self):
+        """The pressure rises above the smallest principal compression in the plane; a hundredth of the rate is below."""
+        scene, end = self.scene("poro/injection_days_2d.xml"), ["Time.end=86400", "Time.steps=1"]
+        for rate, ranks, expected in (("4e-5", 1, 1), ("4e-5", 2, 1), ("4e-7", 1, 0)):
+            err = self.warnings(scene, f"Flow.Wells.injector.rate={rate}", *end, command="run", ranks=ranks)
+            self.assertEqual(err.count("Flow > Wells: the pressure in fractures exceeds the smallest principal compression"), expected, err)
+
     def test_cohesive_zone(self):
         scene = self.scene("earthquakes/spring_slider_2d.xml")
         self.assertEqual(self.warnings(scene), "")

@@ -5,6 +5,7 @@
 #include "physics/flow/flow.hpp"
 #include "physics/flow/wells_and_channels.hpp"
 #include "physics/mechanics/mechanics.hpp"
+#include "physics/mechanics/plausibility.hpp"
 #include "physics/scene.hpp"
 #include "transport/hybrid_diffusion.hpp"
 #include "transport/well_connections.hpp"
@@ -56,6 +57,25 @@ void add_well_warnings(const Setting& setting, std::vector<std::string>& warning
         "the well is connected to the rock only", "if it should be on the fracture, give a point of the fracture"));
 }
 
+/// Warns about leak-off coefficients above those of any rock. Collective.
+void add_leak_off_warnings(const Setting& setting, std::vector<std::string>& warnings) {
+  constexpr Real maximum = 0.01;  // m/s^0.5
+  const auto& [scene, mesh, start] = setting;
+  std::vector<Real> largest(mesh.fracture_names.size(), 0);
+  looking([&, &scene = scene, &mesh = mesh] {
+    for (const auto& face : mesh.fracture_faces)
+      largest[face.fracture] = std::max(
+          largest[face.fracture], scene.fractures.at(mesh.fracture_names[face.fracture]).leak_off(face.centre, 0));
+  });
+  largest = base::max_over_ranks(*mesh.comm, largest);
+  for (std::size_t k = 0; k < largest.size(); ++k)
+    if (largest[k] > maximum)
+      warnings.push_back(implausible(
+          fmt::format("{}: Sprekk > Fractures > {} > \"leak-off coefficient\"", scene.origin, mesh.fracture_names[k]),
+          fmt::format("reaches {:.4g} m/s^0.5", largest[k]), "rock has 1e-6 to 1e-3 m/s^0.5",
+          "check the unit: 1 ft/min^0.5 is 0.0394 m/s^0.5"));
+}
+
 /// Warns about channels without an intersection. Collective.
 void add_channel_warnings(const Setting& setting, std::vector<std::string>& warnings) {
   const auto& [scene, mesh, start] = setting;
@@ -103,6 +123,7 @@ std::vector<std::string> Flow::warnings(const Setting& setting) {
       all.push_back(scene.origin + ": " + skew);
   add_closure_warnings(setting, all);
   add_well_warnings(setting, all);
+  add_leak_off_warnings(setting, all);
   add_channel_warnings(setting, all);
   return all;
 }

@@ -3,8 +3,10 @@
 #include "assembly/geometry.hpp"
 #include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
+#include "base/symmetric.hpp"
 #include "base/text.hpp"
 #include "mesh/extents.hpp"
+#include "mesh/extreme.hpp"
 #include "physics/scene.hpp"
 
 #include <fmt/ranges.h>
@@ -29,48 +31,11 @@ std::vector<Real> some_of(const std::vector<Real>& times) {
   return some;
 }
 
-Real largest_principal(const std::vector<Real>& s) {
-  const Real xy = s[3], yz = s.size() > 4 ? s[4] : 0, xz = s.size() > 4 ? s[5] : 0;
-  const Real mean = (s[0] + s[1] + s[2]) / 3, a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
-  const Real p = std::sqrt((a * a + b * b + c * c + 2 * (xy * xy + yz * yz + xz * xz)) / 6);
-  if (p == 0) return mean;
-  const Real det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
-  return mean + 2 * p * std::cos(std::acos(std::clamp(det / (2 * p * p * p), Real(-1), Real(1))) / 3);
-}
-
 namespace {
 
+using mesh::Extreme;
+
 constexpr Real huge = std::numeric_limits<Real>::max();
-
-/// Largest value and its position. Among equal values, the smallest position counts (x, then y, then z), on any
-/// partition.
-struct Extreme {
-  Real value = -huge;
-  mesh::Vector x{};
-
-  void offer(Real other, const mesh::Vector& at) {
-    if (other > value || (other == value && at < x)) *this = {other, at};
-  }
-};
-
-/// Replaces each element by the largest over all ranks. Collective.
-void take_largest(const Comm& comm, std::vector<Extreme>& all) {
-  std::vector<Real> value;
-  for (const auto& one : all) value.push_back(one.value);
-  const auto maximum = base::max_over_ranks(comm, value);
-  std::vector<bool> here;
-  for (std::size_t k = 0; k < all.size(); ++k) here.push_back(value[k] == maximum[k]);
-  for (int i = 0; i < 3; ++i) {
-    std::vector<Real> x;
-    for (std::size_t k = 0; k < all.size(); ++k) x.push_back(here[k] ? all[k].x[i] : huge);
-    const auto minimum = base::min_over_ranks(comm, x);
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      here[k] = here[k] && x[k] == minimum[k];
-      all[k].x[i] = minimum[k];
-    }
-  }
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].value = maximum[k];
-}
 
 /// Calls use(face centre, piece of rock) for owned faces of a condition.
 template <class Use>
@@ -123,7 +88,7 @@ std::string strain_doubt(const Setting& setting, const std::vector<Real>& times)
       add_displacements(setting, i, t, false, all);
       take_largest(*setting.mesh.comm, all);
       for (std::size_t k = 0; k < all.size(); k += 2) {
-        if (all[k].value == -huge) continue;
+        if (all[k].value == Extreme::none) continue;
         const Real difference = all[k].value + all[k + 1].value, distance = norm(all[k].x - all[k + 1].x);
         if (difference > worst.strain * distance && distance > 0)
           worst = {difference / distance, t, difference, distance};
@@ -300,7 +265,7 @@ std::string tension_doubt(const Setting& setting) {
       const auto x = mesh::cell_centre(mesh, cell);
       std::vector<Real> stress;
       for (const auto& component : initial.value[mesh.cell_region[cell]]) stress.push_back(component(x, 0));
-      const Real principal = largest_principal(stress);
+      const Real principal = base::largest_principal(stress);
       highest[0].offer(principal, x);
       volumes[0] += principal > 0;
       volumes[1] += 1;

@@ -20,7 +20,4 @@ void looking(const Look& look) {
 /// At most twelve of the times, including the last one.
 std::vector<Real> some_of(const std::vector<Real>& times);
 
-/// Largest eigenvalue of a symmetric tensor XX, YY, ZZ, XY[, YZ, XZ].
-Real largest_principal(const std::vector<Real>& s);
-
 }  // namespace sprekk::physics

@@ -2,6 +2,7 @@
 
 #include "assembly/geometry.hpp"
 #include "base/over_ranks.hpp"
+#include "base/symmetric.hpp"
 #include "physics/mechanics/plausibility.hpp"
 #include "physics/scene.hpp"
 
@@ -79,7 +80,7 @@ PressurePlaces places_in_box(const mesh::Mesh& mesh, const std::string& name, co
 Real smallest_compression(const std::vector<base::Expression>& stress, const mesh::Vector& x, int dim) {
   std::vector<Real> s;
   for (const auto& component : stress) s.push_back(component(x, 0));
-  return dim == 2 ? -0.5 * (s[0] + s[1]) - std::hypot(0.5 * (s[0] - s[1]), s[3]) : -largest_principal(s);
+  return dim == 2 ? -0.5 * (s[0] + s[1]) - std::hypot(0.5 * (s[0] - s[1]), s[3]) : -base::largest_principal(s);
 }
 
 }  // namespace
@@ -129,6 +130,29 @@ std::vector<std::string> hydraulic_opening_doubts(const Setting& setting, const 
               places_in_box(mesh, name, one));
   }
   return doubts;
+}
+
+std::vector<std::string> opening_by_rate_doubts(const Setting& setting,
+                                                const std::vector<assembly::OutputField>& outputs) {
+  const auto& [scene, mesh, start] = setting;
+  const auto initial = initial_stress(scene, mesh);
+  const auto any = [](const auto& all, const auto& has) { return std::ranges::any_of(all, has); };
+  if (initial.empty() || !scene.flow ||
+      !any(scene.flow->wells, [](const auto& one) { return one.second.rate.has_value(); }) ||
+      any(scene.fractures, [](const auto& one) { return one.second.unbroken.has_value(); }))
+    return {};
+  bool above = false;
+  for (const auto& output : outputs)
+    for (std::size_t f = 0; f < output.values.size() && output.name == "fracture pressure" && !above; ++f) {
+      const auto& face = mesh.fracture_faces[f];
+      const Real compression = smallest_compression(initial.of_cell(mesh, face.cell[0]), face.centre, mesh.dim());
+      above = compression > 0 && output.values[f] > (1 + 1e-6) * compression;
+    }
+  if (!base::on_any_rank(*mesh.comm, above)) return {};
+  return {implausible(scene.origin + ": Sprekk > Flow > Wells",
+                      "the pressure in fractures exceeds the smallest principal compression of the initial stress",
+                      "fractures normal to this stress open (hydraulic opening)",
+                      "inject less, or ignore this warning if fractures should open")};
 }
 
 }  // namespace sprekk::physics

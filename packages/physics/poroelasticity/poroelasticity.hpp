@@ -3,6 +3,7 @@
 
 #include "physics/physics.hpp"
 #include "physics/poroelasticity/given_pressure.hpp"
+#include "physics/poroelasticity/hydraulic_opening.hpp"
 #include "transport/stabilisation.hpp"
 
 namespace sprekk::physics {
@@ -26,9 +27,9 @@ struct Poroelasticity : Physics<Poroelasticity> {
 
   struct Warnings {
     static std::vector<std::string> of_input(const Setting& setting, const std::vector<Real>& times);
-    static std::vector<std::string> of_state(const Setting&, const std::vector<Real>&,
-                                             const std::vector<assembly::OutputField>&) {
-      return {};
+    static std::vector<std::string> of_state(const Setting& setting, const std::vector<Real>&,
+                                             const std::vector<assembly::OutputField>& outputs) {
+      return is_in(setting.scene) ? opening_by_rate_doubts(setting, outputs) : std::vector<std::string>();
     }
   };
 };
