@@ -152,7 +152,7 @@ void describe(const Model& model, base::Log& log) {
   std::vector<std::string> modules;
   for (const auto& module : model.system().modules()) modules.push_back(module->name());
   log.info("modules: {}", fmt::join(modules, "; "));
-  log.info("linear solver: {}", base::trimmed(model.newton().linear().solver().describe()));
+  log.info("linear solver: {}", model.newton().linear().solver().reason);
 }
 
 /// Logs the cost of each part of the preconditioner on this rank.

@@ -25,6 +25,7 @@ class Log(ProgramTest):
             self.assertRegex(lines[0], rf"^sprekk \d+\.\d+\.\d+: {self.scene(CYCLIC)} on {ranks} rank{'s' * (ranks > 1)}$")
             self.assertEqual(lines[1], "mesh: 4 cells, 12 nodes, 2 fracture faces")
             self.assertEqual(sum("24 unknowns" in line for line in lines), 1, out)
+            self.assertNotIn("ICNTL", out)
             self.assertEqual([step[1] for step in STEP.finditer(out)], list("12345678"))
             self.assertEqual(lines[-5:], ["open on 0 of 1 fractures", 'stick on 1 of 1 fractures: "fracture" (100 % of its area)',
                                           "slip on 0 of 1 fractures", 'has slipped on 1 of 1 fractures: "fracture" (100 % of its area)',
