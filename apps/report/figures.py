@@ -22,6 +22,8 @@ OF_FRACTURES = [
     ("max_fracture_pressure", "largest pressure", "Pa"),
     ("area_broken", "broken area", "m²"),
     ("fracture_energy", "fracture energy", "J"),
+    ("friction_energy", "energy dissipated by slip", "J"),
+    ("fluid_volume", "fluid volume", "m³"),
     ("leaked_volume", "leaked volume", "m³"),
     ("moment", "moment", "N m"),
     ("moment_magnitude", "moment magnitude", ""),
@@ -31,6 +33,8 @@ OF_PLANE = {  # titles and units in 2D
     "area": ("length", "m"),
     "area_broken": ("broken length", "m"),
     "fracture_energy": ("fracture energy per depth", "J/m"),
+    "friction_energy": ("energy dissipated by slip, per depth", "J/m"),
+    "fluid_volume": ("fluid volume per depth", "m²"),
     "leaked_volume": ("leaked volume per depth", "m²"),
     "moment": ("moment per depth", "N"),
 }
@@ -154,6 +158,34 @@ def of_wells(steps, dim):
         yield Table("Wells", titles, rows, "")
 
 
+def of_energy(step, dim):
+    """Yields the table of the energy balance since the start."""
+    energy = step.get("energy")
+    if not energy:
+        return
+    work, balance = energy.get("work", {}), energy.get("balance", {})
+    on_rock = sum(work.get(name, 0) for name in ("pressure", "face pressure"))
+    fractures = step.get("fractures", {}).values()
+    rows = [
+        ("work of loads and of the initial stress", work.get("loads")),
+        ("work of prescribed displacements", work.get("supports")),
+        ("work of the fluid on the rock", on_rock if "face pressure" in work or "pressure" in work else None),
+        ("elastic energy of the rock", energy.get("elastic")),
+        ("work on fractures", -work["traction"] if "traction" in work else None),
+    ]
+    for key, title in (("friction_energy", "dissipated by slip"), ("fracture_energy", "fracture energy of bonds")):
+        values = [one[key] for one in fractures if key in one]
+        rows.append((f"– {title}", sum(values) if values else None))
+    rows += [(f"fluid: {name}", value) for name, value in balance.items()]
+    rows.append(("unassigned", energy.get("unassigned")))
+    largest = max(abs(value) for _, value in rows if value is not None)
+    rows = [(title, value) for title, value in rows if value is not None and abs(value) > NOISE * largest]
+    title, texts = column("energy", [value for _, value in rows], "J")
+    note = "negative values of modules of the fluid: dissipated or stored"
+    yield Table("Energy since the start", ["", title.replace("J)", "J/m)") if dim == 2 else title],
+                list(zip((name for name, _ in rows), texts)), note if balance else "")
+
+
 def of_costs(content):
     mesh = content.get("mesh", {})
     fields = content.get("blocks", {}).get("fields", [])
@@ -227,6 +259,7 @@ def of_run(content, reference, found):
         *of_points(content, last),
         *of_wells([step for step in content["steps"] if "wells" in step] or [last], dim),
         *of_boundaries(last),
+        *of_energy(last, dim),
     ]
     return tables, [*of_joints(content, reference), *of_costs(content)]
 

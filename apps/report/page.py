@@ -60,9 +60,12 @@ def number_of_fractures(results, scene):
 def summary(results, scene, headline):
     mesh, steps = results.get("mesh", {}), results["steps"]
     body = {2: "A plane section of rock", 3: "A body of rock"}.get(mesh.get("dimension"), "Rock")
+    fields = {field["name"] for field in results.get("blocks", {}).get("fields", [])}
+    places = ["rock"] * ("pressure" in fields) + ["fractures"] * bool(mesh.get("fracture_faces"))
+    fluid = f"with flow in {' and '.join(places)}{' only' if places == ['fractures'] else ''}"
     physics = [
         words
-        for section, words in (("Flow", "with a fluid that flows through it"), ("Heat", "with heat"))
+        for section, words in (("Flow", fluid), ("Heat", "with heat"), ("Tracer", "with a dissolved tracer"))
         if section in scene.entries
     ]
     return (

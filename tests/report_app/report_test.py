@@ -97,6 +97,36 @@ class Pages(ReportTest):
         joined = [path for path in blocks if path[0] == "Fractures"]
         self.assertEqual([path[1].count(",") for path in joined], [10])
 
+    def test_places_of_flow(self):
+        """The summary distinguishes flow in rock and in fractures, with and without fractures."""
+        for fields, faces, words in (
+            (("pressure", "face pressure"), 3, "with flow in rock and fractures,"),
+            (("face pressure",), 3, "with flow in fractures only,"),
+            (("pressure", "face pressure"), 0, "with flow in rock,"),
+        ):
+            results = {
+                "mesh": {"dimension": 2, "cells": 4, "fracture_faces": faces},
+                "steps": [{"time": 1.0}],
+                "blocks": {"fields": [{"name": name} for name in fields]},
+            }
+            said = report_page.summary(results, mock.Mock(entries={"Flow": {}}), "")
+            self.assertIn(f"A plane section of rock {words} of 4 cells", said)
+
+    def test_energy(self):
+        """Work on fractures is the negative of that of their traction; parts of it are sums over the sets. In J/m in 2D."""
+        work = {"loads": -200.0, "supports": 1500.0, "traction": -900.0, "face pressure": 100.0}
+        energy = {"elastic": 500.0, "work": work, "balance": {"wells": 120.0, "fracture flow": -20.0}, "unassigned": 1e-12}
+        sets = {"a": {"friction_energy": 250.0, "fracture_energy": 100.0}, "b": {"friction_energy": 50.0}}
+        for dim, unit in ((2, "kJ/m"), (3, "kJ")):
+            (table,) = figures.of_energy({"energy": energy, "fractures": sets}, dim)
+            self.assertEqual(table.columns[1], f"energy ({unit})")
+            rows = dict(table.rows)
+            self.assertEqual(rows["work on fractures"], "0.9")
+            self.assertEqual((rows["– dissipated by slip"], rows["– fracture energy of bonds"]), ("0.3", "0.1"))
+            self.assertEqual((rows["work of the fluid on the rock"], rows["fluid: fracture flow"]), ("0.1", "−0.02"))
+            self.assertNotIn("unassigned", rows)
+        self.assertEqual(list(figures.of_energy({}, 2)), [])
+
     def test_failed_run_is_reported(self):
         self.run_scene(
             ROOT / "docs/shear_test.xml", "Solver.maximum iterations=1", "Tables.ramp.values={0, 1000, 0}", expect=3
