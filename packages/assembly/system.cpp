@@ -207,6 +207,7 @@ void System::commit(const Evaluation& x) {
   if (structure_.has_rates()) residual_at(x, there, end = structure_.create_vector());
   rate_history_.commit(end, there);
   if (accuracy_) accuracy_->commit(x.x(), rate_history_.dt(), there);
+  if (energy_) energy_->commit(x.x(), rate_history_.dt(), there);
   for (const auto& module : structure_.modules) {
     if (!module.steps) continue;
     auto s = module.at(there);
@@ -332,16 +333,24 @@ void System::resume(const BlockVector& x, const Memory& memory) {
   scaling_.restore(memory.scales);  // excludes loads of a rejected step
   if (contact_) contact_->resume(x, memory.calibration);
   if (accuracy_) accuracy_->resume(x, memory.errors);
+  if (energy_) energy_->start(x, memory.energy);
 }
 
 System::Memory System::memory() const {
-  return {rate_history_.committed_t(), rate_history_.committed_dt(), scales(),
+  return {rate_history_.committed_t(),
+          rate_history_.committed_dt(),
+          scales(),
           contact_ ? contact_->calibration() : std::vector<Real>(),
-          accuracy_ ? accuracy_->memory() : std::vector<Real>()};
+          accuracy_ ? accuracy_->memory() : std::vector<Real>(),
+          energy_ ? energy_->sums() : Energy::Sums()};
 }
 
 void System::watch_errors(Real duration) {
   accuracy_ = std::make_unique<StepAccuracy>(structure_, rate_history_.scheme(), initial(), duration);
+}
+
+void System::watch_energy() {
+  energy_ = std::make_unique<Energy>(structure_, [this](const BlockVector& x, BlockVector& r) { raw_residual(x, r); });
 }
 
 /// Returns the loads of modules at time t and state x, [block], followed by the prescribed values, [block].
@@ -395,6 +404,8 @@ std::vector<Total> System::totals(const BlockVector& x) {
   for (const auto& total : totals) here.push_back(total.value);
   const auto all = base::sum_over_ranks(*comm(), here);
   for (std::size_t k = 0; k < all.size(); ++k) totals[k].value = all[k];
+  if (energy_)
+    for (const auto& [path, sum] : energy_->sums()) totals.push_back({path, sum, mesh().dim() == 2 ? "J/m" : "J"});
   return totals;
 }
 

@@ -1,6 +1,7 @@
 // Equation system of a list of modules. Blocks, sparsity, ghosts and storage follow from their declarations.
 #pragma once
 
+#include "assembly/energy.hpp"
 #include "assembly/flux_lag.hpp"
 #include "assembly/ghosts.hpp"
 #include "assembly/jacobian.hpp"
@@ -74,6 +75,7 @@ class System : public fields::BlockProblem, private contact::Equations {
     Scales scales;                  ///< scales of the loads so far
     std::vector<Real> calibration;  ///< see contact::Contact
     std::vector<Real> errors;       ///< data of watch_errors()
+    Energy::Sums energy = {};       ///< sums of watch_energy()
   };
   Memory memory() const;  ///< Returns this data for a checkpoint. Local.
   /// Continues from x and the histories, which belong to x. Throws an Error for missing scales, and like set_time.
@@ -93,6 +95,8 @@ class System : public fields::BlockProblem, private contact::Equations {
 
   /// Enables step error estimates in each commit. Call at the initial state. Collective.
   void watch_errors(Real duration);
+  /// Enables sums of work in each commit, which totals() then contains. They start at the next resume(). Local.
+  void watch_energy();
   /// Returns whether a module stores a quantity or evolves with time, so that the step length matters.
   bool has_rates() const { return structure_.has_rates() || evolves(); }
   bool evolves() const { return structure_.evolves(); }  ///< see Declaration::evolves
@@ -152,6 +156,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   FluxLag flux_lag_;
   std::unique_ptr<RowSizes> row_sizes_;
   std::unique_ptr<StepAccuracy> accuracy_;  // null: errors of steps are not estimated
+  std::unique_ptr<Energy> energy_;          // null: works are not summed
   fields::BlockVector load_;                // [block] residual of the linear modules at x = 0 and the present time
   bool loaded_ = false;                     // load_ has been computed
   Real extent_;                             // largest extent of the domain, m

@@ -19,7 +19,7 @@ struct JointPoint {
 /// History variables that commit() advances to the end of a step; on the device.
 struct JointHistory {
   View<Real**> plastic_jump;  ///< [face, dim - 1] m
-  View<Real**> slid;          ///< [face, 1] 0: never slid, 1: slid in the step, 2: slid before
+  View<Real**> slid;          ///< [face, 2] 0: never slid, 1: slid in the step, 2: slid before; sum of work(), J/m^2
   View<Real**> runaway;       ///< [face, 1] m, see runaway.hpp; empty if laws have no history
   View<Real*> softness;       ///< [face] m/Pa, see runaway_slip(); empty if laws have no history
 };

@@ -143,6 +143,7 @@ template <int dim>
 KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end, const JointHistory& to) const {
   const auto& joint = law[number(f)];
   const auto& p = to.plastic_jump;
+  const Real work = dissipated(f, end.w, end.traction);
   bool slides = end.state == ContactState::slip;
   const bool given = is_prescribed(f);
   for (int i = 0; i < dim - 1 && given; ++i) {
@@ -150,6 +151,7 @@ KOKKOS_FUNCTION void JointPoints<dim>::commit(int f, const JointPoint<dim>& end,
     p(f, i) = prescribed(f, i + 1);
   }
   to.slid(f, 0) = slides ? 1 : to.slid(f, 0) > 0 ? 2 : 0;
+  if (slides) to.slid(f, 1) += work;
   if (end.state != ContactState::stick && !given) {
     Real elastic[dim], plastic[dim];
     split_jump<dim>(joint, end.state, end.w, end.traction, end.p_old, elastic, plastic, history(f));

@@ -181,6 +181,7 @@ void carry_over(const mesh::Mesh& whole, assembly::System& from, const fields::B
   for (auto& [name, scale] : memory.scales)
     if (const auto old = before.scales.find(name); old != before.scales.end()) scale = std::max(scale, old->second);
   if (memory.errors.size() == before.errors.size()) memory.errors = before.errors;
+  memory.energy = before.energy;
   to.resume(carried, memory);
 }
 

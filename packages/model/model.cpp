@@ -141,6 +141,7 @@ std::unique_ptr<assembly::System> Model::make_system(Draft draft) const {
       mesh, std::move(draft.modules), conditions, timers_,
       scene.time.scheme == "BDF2" ? assembly::Rates::Scheme::bdf2 : assembly::Rates::Scheme::implicit_euler);
   if (scene.time.chooses_steps()) system->watch_errors(scene.time.times().back() - scene.time.start);
+  if (scene.output.energy) system->watch_energy();
   return system;
 }
 
@@ -330,6 +331,7 @@ io::Checkpoint Model::save() {
                         {"scales", memory.scales},
                         {"calibration", memory.calibration},
                         {"errors", memory.errors},
+                        {"energy", memory.energy},
                         {"scene", fingerprint(scene_, *system_)},
                         {"refinements", refinements_}};
   start_solver();
@@ -352,8 +354,9 @@ void Model::restore(const io::Checkpoint& checkpoint) {
     Kokkos::deep_copy(values, fields::by_entity(vector, field.n_components));
   }
   time_ = content.at("time");
-  system_->resume(x_, {time_, content.at("dt"), content.at("scales"), content.at("calibration"),
-                       content.value("errors", std::vector<Real>())});
+  system_->resume(x_,
+                  {time_, content.at("dt"), content.at("scales"), content.at("calibration"),
+                   content.value("errors", std::vector<Real>()), content.value("energy", assembly::Energy::Sums())});
   start_solver();
 }
 

@@ -30,6 +30,9 @@ void Output::describe(base::Section& s) {
   s.entry(error_estimate, "error estimate", "-",
           "estimate of the error due to the mesh after every step: error_estimate in results.json, and fields; costs a "
           "pass over all cells and, with fractures, a linear solve per step");
+  s.entry(energy, "energy", "-",
+          "energy balance: elastic energy and work since the start, by cause, `energy` in "
+          "results.json; costs a few residuals per step");
   s.choice(time_unit, "time unit", {"s", "min", "h", "d", "year"}, "unit of times in tables of probes and in pictures");
   s.section(checkpoints, "checkpoints", "checkpoints for --restart; another checkpoint follows the last step");
   s.section(events, "events", "catalogue of fast events in events.csv, in place of events by the mean rate");

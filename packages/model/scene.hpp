@@ -61,6 +61,7 @@ struct Output {
   bool vtu = true;
   int every = 1;  ///< steps
   bool error_estimate = false;
+  bool energy = false;          ///< sums of work
   std::string time_unit = "s";  ///< time unit of tables and files for ParaView
   std::optional<CheckpointTimes> checkpoints;
   std::optional<EventThreshold> events;

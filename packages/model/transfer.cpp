@@ -61,6 +61,7 @@ void transfer(const assembly::Prolongation& prolongation, assembly::System& from
   memory.dt = before.dt;
   memory.calibration = before.calibration;
   memory.errors = before.errors;
+  memory.energy = before.energy;
   for (auto& [name, scale] : memory.scales) scale = std::max(scale, before.scales.at(name));
   to.resume(x_to, memory);
 }

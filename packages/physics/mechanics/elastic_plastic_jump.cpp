@@ -76,7 +76,7 @@ class ElasticPlasticJump final : public assembly::Module,
     d.evolves = parameters_.depends_on_rate;
     if (dissipates()) d.couplings.push_back({Loop::fracture_faces, parameters_.power_to, d.couplings[0].columns});
     const auto face = fields::Entity::fracture_face;
-    d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 1}};
+    d.history = {{"plastic jump", face, dim - 1}, {"slid", face, 2}};
     declare_jump_outputs<dim>(
         parameters_, [this](const auto& state, const auto& use) { for_each_jump(state, use); }, d);
     if (parameters_.n_history > 0) {
@@ -466,6 +466,7 @@ void ElasticPlasticJump<dim>::for_each_jump(const assembly::State& state,
     const auto& face = mesh_->fracture_faces[f];
     JumpOfFace<dim> jump(face, point, joint(f), slid(f, 0) == 1, history(f), is_prescribed(f));
     jump.has_slipped = slid(f, 0) > 0;
+    jump.friction_work = slid(f, 1);
     jump.number = parameters_.joints.number_of(f, face.fracture);
     jump.shear_modulus = (elasticity(face.cell[0]).G + elasticity(face.cell[1]).G) / 2;
     if (has_kept) jump.runaway = runaway(f, 0);

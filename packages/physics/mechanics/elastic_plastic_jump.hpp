@@ -48,7 +48,7 @@ std::vector<std::array<Real, 3>> initial_tractions(const mesh::Mesh& mesh, const
 /// History variables:
 /// - plastic tangential jump p_old [face, dim - 1], set to w_t on open faces, w_t - lambda_t/K_t on sliding faces and
 ///   to a prescribed slip, see laws/prescribed_jump.hpp;
-/// - "slid" [face, 1]: 0 never, 1 in the last step, 2 before;
+/// - "slid" [face, 2]: 0 never, 1 in the last step, 2 before; energy dissipated by slip, J/m^2;
 /// - "history of laws" [face, n_history], if any, updated by the laws;
 /// - with these "runaway slip" [face, 1]: largest unstable slip of a step so far, see laws/runaway.hpp.
 ///

@@ -99,6 +99,8 @@ void declare_jump_outputs(const ElasticPlasticJumpParameters& parameters, const 
   if (dim == 3) moment.derived = {{"moment_magnitude", "-", moment_magnitude}};
   moment.events = {"slip", {"magnitude", "-", moment_magnitude}};
   number("moment density", "N/m", moment, [](const Jump& jump) { return jump.shear_modulus * jump.slip_since_start; });
+  number("friction work", "J/m^2", {Summary::integral, "friction energy", "", {}, unit_of_integral("J/m^2", dim)},
+         [](const Jump& jump) { return jump.friction_work; });
   if (parameters.n_history > 0)
     number("runaway slip", "m", {Summary::mean_and_max, "runaway slip"}, [](const Jump& jump) { return jump.runaway; });
   for (const auto& quantity : parameters.quantities) {

@@ -21,6 +21,7 @@ struct JumpOfFace {
   int number = 0;            ///< of the joint in ElasticPlasticJumpParameters
   Real shear_modulus = 0;    ///< mean of both sides, Pa
   Real runaway = 0;          ///< history variable "runaway slip", m
+  Real friction_work = 0;    ///< energy dissipated by slip, J/m^2
 
   JumpOfFace(const mesh::Mesh::FractureFace& face, const laws::JointPoint<dim>& point,
              const laws::JointParameters& joint, bool slid, const laws::History& history, bool prescribed);

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""Energy balances of runs: energy_test.py PROGRAM ROOT MPIEXEC"""
+from program import ProgramTest, main
+
+ENERGY = ["Output.energy=true", "Output.vtu=false"]
+
+
+class Energy(ProgramTest):
+    def energies(self, scene, *sets, ranks=1):
+        """Returns the steps of a run, and the energies of the last one."""
+        steps = self.run_scene(scene, *ENERGY, *sets, ranks=ranks)["steps"]
+        return steps, steps[-1]["energy"]
+
+    def expect(self, found, exact, tolerance=1e-9):
+        self.assertAlmostEqual(found / exact, 1, delta=tolerance)
+
+    def test_block(self):
+        """s^2 (1 - nu^2)/(2 E) per area, as work of a load, of prescribed displacements, and with an initial stress."""
+        stress, area, compliance = 5e6, 6.0, (1 - 0.25**2) / 10e9
+        exact = stress**2 * compliance / 2 * area
+        cases = [("loads", []), ("loads", ["Time.steps=3", "Boundary conditions.load.traction={0, -5e6*t}"]),
+                 ("supports", ["Boundary conditions.load.traction={}", f"Boundary conditions.load.displacement={{free, {-3 * stress * compliance}}}"]),
+                 ("loads", ["Bulk.initial stress={0, -7e6, 0, 0}", "Boundary conditions.load.traction={0, -7e6 - 5e6*t}"])]
+        for ranks in (1, 2):
+            for cause, sets in cases:
+                _, energy = self.energies("verification/uniaxial_2d.xml", *sets, ranks=ranks)
+                self.expect(energy["elastic"], exact)
+                self.expect(energy["work"][cause], exact)
+                for other in {"loads", "supports"} - {cause}:
+                    self.assertLess(abs(energy["work"][other]), 1e-12 * exact)
+                self.assertLess(abs(energy["unassigned"]), 1e-9 * exact)
+
+    def test_friction(self):
+        """0.18 times the path of slip; the joint stores t^2/(2 K_t); both are the work on the fracture. The slip begins
+        within a step, so the error of the work is of first order."""
+        defects = []
+        for ranks, n in ((1, 64), (2, 128)):
+            steps, energy = self.energies("verification/cyclic_2d.xml", f"Time.steps={n}", ranks=ranks)
+            slips = [0.0] + [step["fractures"]["fracture"]["mean_plastic_jump"]["local"][1] for step in steps]
+            path = sum(abs(b - a) for a, b in zip(slips, slips[1:]))
+            last = steps[-1]["fractures"]["fracture"]
+            self.assertGreater(path, 1)
+            self.expect(last["friction_energy"], 0.18 * path)
+            stored = last["mean_traction"]["local"][1] ** 2 / (2 * 2)
+            work = energy["work"]
+            self.assertLess(abs(energy["unassigned"]), 1e-9 * work["supports"])
+            defects.append(abs(-work["traction"] / (0.18 * path + stored) - 1))
+        self.assertLess(defects[1], 0.01)
+        self.assertLess(defects[1], 0.7 * defects[0])
+
+    def test_restart(self):
+        """The sums continue after a restart."""
+        scene, sets = "verification/cyclic_2d.xml", [*ENERGY, "Output.checkpoints.steps=4"]
+        words = [word for one in sets for word in ("--set", one)]
+        complete = self.run_scene(scene, *sets)["steps"][-1]["energy"]
+        self.call("run", self.scene(scene), "--output", "part", *words, "--set", "Time.end=4", "--set", "Time.steps=4")
+        self.call("run", self.scene(scene), "--output", "part", *words, "--restart")
+        continued = self.results("part")["steps"][-1]["energy"]
+        self.expect(continued["elastic"], complete["elastic"])
+        for name in ("supports", "traction"):
+            self.expect(continued["work"][name], complete["work"][name])
+
+    def test_beam(self):
+        """While the front advances, the work of the ends is the increase of elastic and fracture energy. The latter agrees
+        with the length of linear fracture mechanics."""
+        (self.folder / "beam.xml").write_text(BEAM)
+        steps, energy = self.energies(self.folder / "beam.xml")
+
+        def change(of):
+            return of(steps[-1]) - of(steps[len(steps) // 2 - 1])
+
+        given = change(lambda step: step["energy"]["work"]["supports"])
+        fracture = change(lambda step: step["fractures"]["growing"]["fracture_energy"])
+        self.expect(change(lambda step: step["energy"]["elastic"]) + fracture, given, 0.002)
+        self.assertLess(abs(energy["unassigned"]), 1e-9 * given)
+        length = [(3 * 32e9 * 0.1**3 * delta**2 / (16 * 30)) ** 0.25 for delta in (1e-4, 2e-4)]  # a + 0.673 h
+        self.expect(fracture, 30 * (length[1] - length[0]), 0.01)
+
+    def test_injection(self):
+        """Pressure times injected volume is the work of the wells, and except for dissipation and compression that on the
+        rock: elastic energy, fracture energy, and work against the compression of the rock."""
+        steps, energy = self.energies("growth/injection_2d.xml")
+        last = steps[-1]["fractures"]["growing"]
+        rock = energy["work"]["face pressure"]
+        balance = energy["balance"]
+        self.assertLess(abs(sum(balance.values())), 1e-6 * balance["wells"])
+        self.expect(energy["elastic"] + last["fracture_energy"] - energy["work"]["loads"], rock, 0.002)
+        wells = sum(step["wells"]["injector"]["pressure"] * step["wells"]["injector"]["rate"] * dt for step, dt in intervals(steps))
+        self.expect(balance["wells"], wells, 1e-3)
+
+
+def intervals(steps):
+    """Yields each step with its length."""
+    return zip(steps, (b - a for a, b in zip([0.0] + [step["time"] for step in steps], (step["time"] for step in steps))))
+
+
+BEAM = """<ParameterList name="Sprekk">
+  <ParameterList name="Mesh">
+    <Parameter name="cell" type="string" value="quadrilateral"/>
+    <Parameter name="order" type="int" value="2"/>
+    <Parameter name="lower corner" type="Array(double)" value="{0, -0.1}"/>
+    <Parameter name="upper corner" type="Array(double)" value="{0.4, 0.1}"/>
+    <Parameter name="cells" type="Array(int)" value="{64, 10}"/>
+    <ParameterList name="fractures">
+      <ParameterList name="growing">
+        <Parameter name="lower corner" type="Array(double)" value="{0, 0}"/>
+        <Parameter name="upper corner" type="Array(double)" value="{0.4, 0}"/>
+      </ParameterList>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Materials">
+    <ParameterList name="rock">
+      <Parameter name="type" type="string" value="elastic"/>
+      <Parameter name="Young's modulus" type="double" value="30e9"/>
+      <Parameter name="Poisson's ratio" type="double" value="0.25"/>
+    </ParameterList>
+    <ParameterList name="joint">
+      <Parameter name="type" type="string" value="joint"/>
+      <Parameter name="friction coefficient" type="double" value="0.6"/>
+      <Parameter name="bond" type="string" value="linear softening"/>
+      <Parameter name="cohesion" type="double" value="20e6"/>
+      <Parameter name="tensile strength" type="double" value="4e6"/>
+      <Parameter name="fracture energy" type="double" value="30"/>
+      <Parameter name="shear fracture energy" type="double" value="750"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Bulk"><Parameter name="material" type="string" value="rock"/></ParameterList>
+  <ParameterList name="Fractures">
+    <ParameterList name="growing">
+      <Parameter name="material" type="string" value="joint"/>
+      <Parameter name="unbroken" type="string" value="x > 0.1"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Boundary conditions">
+    <ParameterList name="ends">
+      <Parameter name="boundary" type="string" value="west"/>
+      <Parameter name="displacement" type="Array(string)" value="{free, (y > 0 ? 1 : -1)*1e-4*t}"/>
+    </ParameterList>
+    <ParameterList name="east">
+      <Parameter name="boundary" type="string" value="east"/>
+      <Parameter name="displacement" type="Array(double)" value="{0, 0}"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Time">
+    <Parameter name="end" type="double" value="1"/>
+    <Parameter name="steps" type="int" value="20"/>
+  </ParameterList>
+</ParameterList>
+"""
+
+if __name__ == "__main__":
+    main()
