@@ -2,6 +2,7 @@
 #include "injected_notch.hpp"
 
 #include "assembly/jacobian_check.hpp"
+#include "base/over_ranks.hpp"
 #include "model/fracture_table.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
@@ -99,6 +100,36 @@ TEST(LeakOff, IsTheSameInThreeDimensionsOnAllRanksAndAfterARestart) {
     }
   }
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(all[1][k] / all[0][k], 1, 1e-2) << k;
+}
+
+/// A bisected mesh has the same leaked fluid, and in the following steps the balance of all fluid since the start is
+/// exact. Faces of the notch, open all the time, continue with their exposure.
+TEST(LeakOff, ContinuesOnARefinedMesh) {
+  auto scene = small_body("triangle");
+  scene.fractures.at("growing").leak_off = leak_off / 4;
+  scene.bisection = std::make_shared<std::optional<mesh::Bisection>>();
+  model::Model model(scene, Tpetra::getDefaultComm());
+  const auto& comm = *model.mesh().comm;
+  const auto longest = [&] {
+    const auto times = model.output("exposure time").values;
+    return base::max_over_ranks(comm, times.empty() ? Real(0) : *std::max_element(times.begin(), times.end()));
+  };
+  for (const Real t : {0.5, 2.0, 4.0}) ASSERT_TRUE(model.step_to(t).converged) << t;
+  const Real lost = leaked(model), exposed = longest();
+  EXPECT_GT(lost, 0);
+  std::vector<GlobalIndex> cells;
+  for (LocalIndex c = 0; c < model.mesh().n_owned_cells; ++c)
+    if (std::abs(mesh::cell_centre(model.mesh(), c)[1]) < 0.5) cells.push_back(model.mesh().cell_id[c]);
+  const auto faces = model.mesh().n_global_fracture_faces;
+  model.refine(base::gather_over_ranks(comm, cells));
+  EXPECT_EQ(model.mesh().n_global_fracture_faces, 2 * faces);
+  EXPECT_NEAR(leaked(model) / lost, 1, 1e-12);
+  EXPECT_NEAR(longest() / exposed, 1, 1e-12);
+  for (const Real t : {6.0, 8.0}) {
+    ASSERT_TRUE(model.step_to(t).converged) << t;
+    EXPECT_NEAR((stored(model) + leaked(model)) / (2e-5 * t), 1, 1e-10) << t;
+  }
+  EXPECT_NEAR(longest() - exposed, 4, 1e-9);
 }
 
 /// Faces that close stop to lose fluid. The pressure in them does not fall below that at which they touch.
