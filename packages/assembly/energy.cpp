@@ -173,7 +173,8 @@ void Energy::add_balances(const BlockVector& x, Real dt, const State& state, Sum
       continue;
     for (const auto& block : r) block->putScalar(0);
     module->residual(module.at(state), rows);
-    auto& sum = sums[{"energy", "balance", module->name()}];
+    const auto name = module->name();  // may end with a choice, "flow, tpfa"
+    auto& sum = sums[{"energy", "balance", name.substr(0, name.find(','))}];
     for (const int b : balances_) {
       sum -= dt * product(*x[b], *r[b]);
       supports += dt * product(*x[b], *r[b], &structure_.constraints[b]);

@@ -22,7 +22,7 @@ namespace sprekk::assembly {
 /// start act gradually in the first step.
 ///
 /// Rows of balances with unknowns in Pa are volume rates. The work of a module in a step is
-///   balance > MODULE                -dt p . (its part of the rows at the end of the step)
+///   balance > MODULE                -dt p . (its part of the rows at the end of the step); name up to a comma
 /// positive for injection, negative for dissipation and storage. `supports` contains the prescribed unknowns.
 class Energy {
  public:
