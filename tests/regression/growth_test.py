@@ -69,6 +69,29 @@ class Growth(ProgramTest):
         self.assertGreater(tip[1][0], 0.69)
         self.assertLess(math.dist(tip[1], tip[3]), 1e-6)
 
+    def test_injection(self):
+        """A closed notch in impermeable rock: pressure of the first step, and length of the crack that contains the fluid with the pressure at its toughness."""
+        rate, residual, E, W = 1e-6, 1e-6, 32e9, 2
+        entries = [one for one in self.STRAIGHT if "toughness" not in one and "schedule" not in one]
+        steps = self.run_scene("growth/edge_crack_2d.xml", *entries, "Mesh.order=2", "Fractures.crack.toughness=1e6", "Time.schedule={2, 10, 20, 30, 40}",
+                               "Boundary conditions.top.traction={0, 0}", "Boundary conditions.bottom.traction={0, 0}", "Materials.rock.permeability={0}",
+                               f"Materials.joint.residual aperture={residual}", "Flow.viscosity=1e-6", "Flow.compressibility=4.5e-10", "Flow.initial pressure=0",
+                               f"Fractures.crack.source=x < 0.4 ? {rate}/0.4 : 0")["steps"]
+
+        def volume(a, pressure):  # opening of the half crack between rollers, from dv/da = 4 K^2/(E' p^2)
+            return -8 * W**2 / (math.pi * E) * pressure * math.log(math.cos(math.pi * a / 2 / W))
+        for step in steps:
+            (x, y, _), = tips(step)
+            crack, injected = step["fractures"]["crack"], rate * step["time"]
+            self.assertAlmostEqual(crack["fluid_volume"], injected + residual * x, delta=1e-3 * injected)  # and nothing else
+            self.assertAlmostEqual(volume(x, crack["mean_fracture_pressure"]), crack["fluid_volume"], delta=0.015 * crack["fluid_volume"])
+            a = 0.6
+            while volume(a, 1e6 / math.sqrt(2 * W * math.tan(math.pi * a / 2 / W))) < crack["fluid_volume"]:
+                a += 1e-4
+            self.assertGreater(x, a - 0.005)
+            self.assertLess(x, a + 0.05 + 0.005)
+        self.assertGreater(x, 0.79)
+
     def test_unstable_growth(self):
         """A constant toughness at a constant load: growth ends with a warning after the given number of extensions, then at the boundary."""
         sets = [word for one in ["Output.vtu=false", "Growth.segment=0.2", "Growth.extensions per step=3", "Fractures.crack.toughness=5e5", "Time.steps=1"] for word in ("--set", one)]
