@@ -12,6 +12,9 @@ struct Extension {
   Real size;                           ///< largest edge of the cells within `length` of the new faces, m
 };
 
+/// Result of an extension: nothing, a new tip, or a junction with another fracture.
+enum class Extended { none, tip, junction };
+
 /// Rotation of the last extension of a fracture about its beginning, counter-clockwise, in 2D.
 struct Turn {
   std::array<Real, 2> begin, tip;  ///< of the extension, m
@@ -51,9 +54,10 @@ class Bisection {
 
   /// Bisects cells near the extension to its size. Then moves nodes to the line of the extension or splits edges that
   /// cross it, and adds the edges along the line to the fracture at the tip. Nodes on fractures and boundaries do not
-  /// move. Returns false, with the bisected cells, if other fractures or boundaries lie within half the length of the
-  /// new tip or of the line, or if cells would become too flat. `parent` as in refine(), of all calls so far. 2D.
-  bool extend(const Extension& extension, std::vector<GlobalIndex>& parent);
+  /// move. If the line ends at another fracture, or less than half of the length before it, the extension ends at a
+  /// node of this fracture. Otherwise nothing but the bisection is done if a fracture or a boundary lies within half of
+  /// the length, or if cells would become too flat. `parent` as in refine(), of all calls so far. 2D.
+  Extended extend(const Extension& extension, std::vector<GlobalIndex>& parent);
   /// Rotates the nodes of an extension, and the nodes around it by a part of the angle. Returns false, without a
   /// change, if cells would become too flat. 2D.
   bool turn(const Turn& turn);

@@ -37,11 +37,13 @@ Real distance_to_segment(const Point& x, const Point& a, const Point& b) {
 /// Triangles of a bisection with their incidence at nodes.
 class Bisection::Patch {
  public:
+  static constexpr int none = -1, on_boundary = -2;
   explicit Patch(Bisection& of) : of_(of) {
     const auto n = of.coordinates_.size() / 2;
     around_.resize(n);
     n_faces_.resize(n, 0);
     is_fixed_.resize(n, 0);
+    single_.resize(n, none);
     for (std::size_t c = 0; c < of.cells_.size(); ++c)
       for (int k = 0; k < 3; ++k) {
         const auto& cell = of.cells_[c];
@@ -52,8 +54,11 @@ class Bisection::Patch {
         const auto& label = of.labels_[cell.label[k]];
         for (const int end : {(k + 1) % 3, (k + 2) % 3}) {
           is_fixed_[cell.node[end]] = 1;
-          if (label.boundary >= 0) n_faces_[cell.node[end]] += 2;  // no tip
-          if (label.fracture >= 0 && label.side == minus) ++n_faces_[cell.node[end]];
+          if (label.boundary >= 0) single_[cell.node[end]] = on_boundary;
+          if (label.fracture < 0 || label.side != minus) continue;
+          ++n_faces_[cell.node[end]];
+          auto& single = single_[cell.node[end]];
+          if (single != on_boundary) single = label.single;
         }
       }
   }
@@ -61,13 +66,20 @@ class Bisection::Patch {
   Point x(GlobalIndex node) const { return {of_.coordinates_[2 * node], of_.coordinates_[2 * node + 1]}; }
   GlobalIndex n_nodes() const { return static_cast<GlobalIndex>(around_.size()); }
   bool is_fixed(GlobalIndex node) const { return is_fixed_[node] != 0; }
-  bool is_obstacle(GlobalIndex node) const { return n_faces_[node] > 0; }
+  bool is_obstacle(GlobalIndex node) const { return single_[node] != none; }
+  /// Returns whether a node belongs to a fracture inside the domain, but not to one single fracture.
+  bool is_on_other(GlobalIndex node, int single) const { return single_[node] >= 0 && single_[node] != single; }
   void fix(GlobalIndex node) { is_fixed_[node] = 1; }
 
+  bool is_at_obstacle(const Point& position, Real tolerance) const {
+    for (GlobalIndex node = 0; node < n_nodes(); ++node)
+      if (is_obstacle(node) && norm(x(node) - position) <= tolerance) return true;
+    return false;
+  }
   /// Returns the tip at a position; -1: none.
   GlobalIndex tip_at(const Point& position, Real tolerance) const {
     for (GlobalIndex node = 0; node < n_nodes(); ++node)
-      if (n_faces_[node] == 1 && norm(x(node) - position) <= tolerance) return node;
+      if (n_faces_[node] == 1 && single_[node] >= 0 && norm(x(node) - position) <= tolerance) return node;
     return -1;
   }
 
@@ -126,6 +138,7 @@ class Bisection::Patch {
     around_.emplace_back();
     n_faces_.push_back(0);
     is_fixed_.push_back(0);
+    single_.push_back(none);
     const auto at_a = around_[a];
     for (const auto c : at_a) {
       const auto corner = [&](const Cell& cell, GlobalIndex node) {
@@ -204,7 +217,8 @@ class Bisection::Patch {
 
   Bisection& of_;
   std::vector<std::vector<std::size_t>> around_;  // [node] cells
-  std::vector<int> n_faces_;                      // [node] of fractures; boundary faces count twice
+  std::vector<int> n_faces_;                      // [node] of fractures
+  std::vector<int> single_;                       // [node] single fracture, none or on_boundary
   std::vector<char> is_fixed_;                    // [node]
 };
 
@@ -231,31 +245,45 @@ void Bisection::refine_near(const Extension& e, Real size, std::vector<GlobalInd
   }
 }
 
-bool Bisection::extend(const Extension& e, std::vector<GlobalIndex>& parent) {
+Extended Bisection::extend(const Extension& wanted, std::vector<GlobalIndex>& parent) {
   SPREKK_CHECK(dim_ == 2, "extension: needs a mesh of triangles");
+  auto e = wanted;
   refine_near(e, e.size, parent);
-  if (norm(e.direction) == 0) return true;
+  if (norm(e.direction) == 0) return Extended::tip;
+  bool meets = false;
   {
     const Patch patch(*this);
-    SPREKK_CHECK(patch.tip_at(e.tip, 1e-6 * e.length) >= 0, "extension: there is no tip at ({}, {})", e.tip[0],
-                 e.tip[1]);
+    const GlobalIndex tip = patch.tip_at(e.tip, 1e-6 * e.length);
+    SPREKK_CHECK(tip >= 0, "extension: there is no tip at ({}, {})", e.tip[0], e.tip[1]);
+    const int single = patch.end_at(tip).label.single;
     const Point end = e.tip + e.length * e.direction;
-    for (GlobalIndex n = 0; n < patch.n_nodes(); ++n)
-      if (patch.is_obstacle(n) && dot(patch.x(n) - e.tip, e.direction) > 0.05 * e.length &&
-          distance_to_segment(patch.x(n), e.tip, end) < 0.5 * e.length)
-        return false;
+    Real nearest = 0.75 * e.size;  // to the line
+    for (GlobalIndex n = 0; n < patch.n_nodes(); ++n) {
+      const Point r = patch.x(n) - wanted.tip;
+      if (!patch.is_obstacle(n) || dot(r, wanted.direction) < 0.05 * wanted.length ||
+          distance_to_segment(patch.x(n), wanted.tip, end) > 0.5 * wanted.length)
+        continue;
+      if (!patch.is_on_other(n, single)) return Extended::none;
+      meets = true;
+      const Real off = std::abs(cross(wanted.direction, r));
+      if (off >= nearest) continue;
+      nearest = off;
+      e.length = norm(r);
+      e.direction = (1 / e.length) * r;
+    }
+    if (meets && nearest == 0.75 * e.size) return Extended::none;  // another fracture passes by
   }
   for (const Real share : {1.0, 0.75, 0.5}) {  // finer cells if the path does not fit
-    refine_near(e, share * e.size, parent);
+    if (!meets) refine_near(e, share * e.size, parent);
     const auto cells = cells_;
     const auto coordinates = coordinates_;
     const auto parent_before = parent;
-    if (add_path(e, share * e.size, parent)) return true;
+    if (add_path(e, share * e.size, parent)) return meets ? Extended::junction : Extended::tip;
     cells_ = cells;
     coordinates_ = coordinates;
     parent = parent_before;
   }
-  return false;
+  return Extended::none;
 }
 
 /// Adds the path of an extension through cells of a size. Returns false, with a damaged mesh, if cells become too flat.
@@ -264,6 +292,7 @@ bool Bisection::add_path(const Extension& e, Real size, std::vector<GlobalIndex>
   const GlobalIndex tip = patch.tip_at(e.tip, 1e-6 * e.length);
   const auto along = [&](GlobalIndex n) { return dot(patch.x(n) - e.tip, e.direction); };
   const auto fracture = patch.end_at(tip);
+  const bool ends = patch.is_at_obstacle(e.tip + e.length * e.direction, 1e-9 * size);
   std::vector<GlobalIndex> path{tip};
   for (bool ended = false; !ended;) {
     const GlobalIndex from = path.back();
@@ -273,14 +302,15 @@ bool Bisection::add_path(const Extension& e, Real size, std::vector<GlobalIndex>
     const auto [a, b] = *edge;
     const auto place = [&](GlobalIndex n) {  // along the line
       const Real left = e.length - along(n);
+      if (ends) return left < 1e-9 * size ? e.length : along(n);
       return left < std::max<Real>(0.5 * (along(n) - begin), 0.4 * size) ? e.length : along(n);
     };
     GlobalIndex best = -1;
     Real shape = flattest;
     for (const GlobalIndex n : {a, b}) {
       const Point before = patch.x(n), to = e.tip + place(n) * e.direction;
-      if (patch.is_fixed(n) && norm(to - before) > 1e-9 * size) continue;
-      if (place(n) < begin + 0.2 * size || place(n) - begin > 1.5 * size) continue;
+      if (patch.is_fixed(n) ? norm(to - before) > 1e-9 * size : ends && place(n) == e.length) continue;
+      if ((place(n) < begin + 0.2 * size && !patch.is_fixed(n)) || place(n) - begin > 1.5 * size) continue;
       const Real here = patch.move(n, to);
       patch.move(n, before);
       if (here > shape) best = n, shape = here;

@@ -167,14 +167,17 @@ void Tips::extend(const Growth& growth, const std::vector<Tip>& tips) {
 void Tips::note(const std::vector<int>& made, base::Log& log) {
   std::size_t k = 0;
   for (const auto& one : change_.extensions) {
-    if (made[k++]) {
+    const auto result = static_cast<mesh::Extended>(made[k++]);
+    if (result == mesh::Extended::junction) {
+      log.info("the tip at ({:.6g}, {:.6g}) has met another fracture", one.tip[0], one.tip[1]);
+    } else if (result == mesh::Extended::tip) {
       segments_.push_back(
           {one.tip, {one.tip[0] + one.length * one.direction[0], one.tip[1] + one.length * one.direction[1]}});
     } else {
       arrested_.push_back(one.tip);
       log.warning(
-          "the tip at ({:.6g}, {:.6g}) ends its growth: another fracture or a boundary is nearer than half of "
-          "the \"segment\", or cells would be too flat",
+          "the tip at ({:.6g}, {:.6g}) ends its growth: a fracture or a boundary is nearer than half of the "
+          "\"segment\", or cells would be too flat",
           one.tip[0], one.tip[1]);
     }
   }

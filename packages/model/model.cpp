@@ -246,7 +246,7 @@ std::vector<int> Model::change_mesh(const mesh::MeshChange& change) {
     if (!bisection) return;
     parent = bisection->refine(change.cells, mesh().dim());
     std::size_t k = 0;
-    for (const auto& one : change.extensions) made[k++] = bisection->extend(one, parent);
+    for (const auto& one : change.extensions) made[k++] = static_cast<int>(bisection->extend(one, parent));
     for (const auto& one : change.turns) made[k++] = bisection->turn(one);
   });
   if (!made.empty()) made = base::sum_over_ranks(*comm, made);

@@ -54,8 +54,8 @@ class Model {
   /// long, and adjacent cells as necessary. The state is transferred, see transfer(); it counts as a change. Throws an
   /// Error if the scene has no Scene::bisection.
   void refine(const std::vector<GlobalIndex>& cells) { change_mesh({cells}); }
-  /// Like refine(), with extensions of fractures in 2D. New faces have their initial state. Returns for each extension
-  /// and each turn whether it was made.
+  /// Like refine(), with extensions of fractures in 2D. New faces have their initial state. Returns for each
+  /// extension its mesh::Extended, for each turn whether it was made.
   std::vector<int> change_mesh(const mesh::MeshChange& change);
 
   /// Finds an equilibrium at time() after changes of the scene, of fields or of host modules. Behaves otherwise like

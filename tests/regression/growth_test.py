@@ -102,7 +102,18 @@ class Growth(ProgramTest):
         self.assertGreater(K, 5e5)
         sets[-1] = "Time.steps=3"
         errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *sets)[1]
-        self.assertIn("ends its growth: another fracture or a boundary", errors)
+        self.assertIn("ends its growth: a fracture or a boundary", errors)
+
+    def test_junction(self):
+        """A crack that meets another fracture ends there; the load then opens both."""
+        wall = ["Mesh.fractures.wall.lower corner={1, -0.4}", "Mesh.fractures.wall.upper corner={1, 0.4}", "Fractures.wall.material=joint"]
+        steps = self.run_scene("growth/edge_crack_2d.xml", "Output.vtu=false", "Growth.segment=0.1", "Fractures.crack.toughness=5e5", "Time.steps=2", *wall)["steps"]
+        self.assertEqual(steps[-1]["stress_intensity"]["x"], [])
+        crack, other = (steps[-1]["fractures"][name] for name in ("crack", "wall"))
+        self.assertAlmostEqual(crack["area"], 1, delta=0.01)
+        self.assertAlmostEqual(other["area"], 0.8, delta=1e-9)
+        self.assertAlmostEqual(crack["area_open"], crack["area"], delta=1e-9)
+        self.assertGreater(other["max_opening"], 0.1 * crack["max_opening"])
 
     def test_refused_scenes(self):
         for entries, text in ((["Mesh.cell=quadrilateral"], "must be triangle"), (["Mesh.refinements=1"], "must be 0"),

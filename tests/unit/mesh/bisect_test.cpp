@@ -299,7 +299,7 @@ TEST(Extension, IsStraightInAnyDirection) {
       Real angle = turn + degrees * M_PI / 180, length = 2;
       for (int pass = 0; pass < 3; ++pass) {
         const Real c = std::cos(angle), s = std::sin(angle);
-        ASSERT_TRUE(bisection.extend({tip, {c, s}, 0.7, 0.25}, parent)) << degrees << " " << pass;
+        ASSERT_EQ(bisection.extend({tip, {c, s}, 0.7, 0.25}, parent), Extended::tip) << degrees << " " << pass;
         tip = {tip[0] + 0.7 * c, tip[1] + 0.7 * s};
         vector = vector + sign * 0.7 * Vector{-s, c, 0};
         length += 0.7;
@@ -323,7 +323,7 @@ TEST(Extension, TurnsAboutItsBeginning) {
     const auto old = sizes_of(bisection.mesh()).at("minus crack");
     const Real sign = old[2] > 0 ? 1 : -1;
     Real angle = 1.2;
-    ASSERT_TRUE(bisection.extend({{5, 4}, {std::cos(angle), std::sin(angle)}, 0.8, 0.3}, parent));
+    ASSERT_EQ(bisection.extend({{5, 4}, {std::cos(angle), std::sin(angle)}, 0.8, 0.3}, parent), Extended::tip);
     for (int pass = 0; pass < 2; ++pass) {
       const std::array<Real, 2> tip{5 + 0.8 * std::cos(angle), 4 + 0.8 * std::sin(angle)};
       ASSERT_TRUE(bisection.turn({{5, 4}, tip, degrees * M_PI / 180})) << degrees;
@@ -351,7 +351,7 @@ TEST(Extension, FollowsCurvedPaths) {
         const auto ahead = [&] {
           return std::array<Real, 2>{begin[0] + 0.25 * std::cos(angle), begin[1] + 0.25 * std::sin(angle)};
         };
-        ASSERT_TRUE(bisection.extend({begin, {std::cos(angle), std::sin(angle)}, 0.25, 0.09}, parent))
+        ASSERT_EQ(bisection.extend({begin, {std::cos(angle), std::sin(angle)}, 0.25, 0.09}, parent), Extended::tip)
             << path << " " << k;
         const Real turned = bend(3 * k + end) / 3;
         if (bisection.turn({begin, ahead(), turned})) angle += turned;
@@ -366,21 +366,44 @@ TEST(Extension, FollowsCurvedPaths) {
   }
 }
 
-/// Near a boundary or another fracture, cells are bisected, but the fracture remains as it was.
+/// Near a boundary, or along another fracture, cells are bisected, but the fracture remains as it was.
 TEST(Extension, NeedsRoom) {
   auto box = with_crack();
   box.fractures["wall"] = fracture({6, 2}, {6, 6});
   Bisection bisection(make_box(box));
   std::vector<GlobalIndex> parent(bisection.n_cells());
   std::iota(parent.begin(), parent.end(), 0);
-  EXPECT_FALSE(bisection.extend({{5, 4}, {1, 0}, 0.8, 0.3}, parent));
-  EXPECT_FALSE(bisection.extend({{5, 4}, {0, 1}, 3.9, 1}, parent));
+  EXPECT_EQ(bisection.extend({{5, 4}, {0, 1}, 3.9, 1}, parent), Extended::none);
+  EXPECT_EQ(bisection.extend({{5, 4}, {0.3, std::sqrt(0.91)}, 1.8, 0.3}, parent), Extended::none);
   const auto sizes = sizes_of(bisection.mesh());
   EXPECT_NEAR(sizes.at("minus crack")[0], 2, 1e-12);
   EXPECT_NEAR(sizes.at("minus wall")[0], 4, 1e-12);
   expect_conforming(bisection.mesh());
-  EXPECT_TRUE(bisection.extend({{5, 4}, {-0.1, -std::sqrt(0.99)}, 0.8, 0.3}, parent));
+  EXPECT_EQ(bisection.extend({{5, 4}, {-0.1, -std::sqrt(0.99)}, 0.8, 0.3}, parent), Extended::tip);
   EXPECT_NEAR(sizes_of(bisection.mesh()).at("minus crack")[0], 2.8, 1e-12);
+}
+
+/// An extension that meets another fracture ends at one of its nodes, shorter or longer than the given length.
+TEST(Extension, EndsAtAnotherFracture) {
+  for (const Real length : {0.8, 1.2, 1.7})
+    for (const Real slope : {-0.4, 0.0, 0.3}) {
+      auto box = with_crack();
+      box.fractures["wall"] = fracture({6, 2}, {6, 6});
+      Bisection bisection(make_box(box));
+      std::vector<GlobalIndex> parent(bisection.n_cells());
+      std::iota(parent.begin(), parent.end(), 0);
+      const Real c = 1 / std::hypot(1, slope);
+      ASSERT_EQ(bisection.extend({{5, 4}, {c, c * slope}, length, length / 3}, parent), Extended::junction)
+          << length << " " << slope;
+      const auto mesh = bisection.mesh();
+      expect_conforming(mesh);
+      EXPECT_GE(flattest(mesh), 0.15);
+      const auto sizes = sizes_of(mesh);
+      EXPECT_NEAR(sizes.at("minus wall")[0], 4, 1e-12);
+      EXPECT_NEAR(std::abs(sizes.at("minus crack")[2]), 3, 1e-12);
+      EXPECT_NEAR(std::abs(sizes.at("minus crack")[1]), std::abs(slope), 0.75 * length / 3 + 1e-12);
+      EXPECT_EQ(n_tips(mesh), 3);
+    }
 }
 
 TEST(Bisect, RefusesOtherCells) {
