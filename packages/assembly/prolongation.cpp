@@ -310,6 +310,7 @@ void Prolongation::set_facet(LocalIndex cell, int place, bool is_amount, Weights
 /// Sets the weights of a ridge of a fracture face. In 2D ridges are corners, in 3D edges that begin at a corner.
 void Prolongation::set_ridge(LocalIndex cell, int face, int ridge, bool is_amount, Weights& weights) const {
   const int dim = fine_->dim(), on = parent_face(cell, face);
+  if (on < 0) return;
   const auto corners = mesh::face_corners(*fine_, cell, face);
   const Point a = corners.x[ridge], b = corners.x[(ridge + dim - 2) % dim];
   const auto l = barycentric(cell, 0.5 * (a + b));
@@ -337,7 +338,7 @@ bool Prolongation::set(const Field& field, LocalIndex cell, int place, Weights& 
       return true;
     case Entity::fracture_face: {
       const int face = parent_face(cell, place);
-      weights[face] = field.is_amount ? share_of_area(cell, place, face) : 1;
+      if (face >= 0) weights[face] = field.is_amount ? share_of_area(cell, place, face) : 1;
       return true;
     }
     case Entity::facet:

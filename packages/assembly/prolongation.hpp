@@ -10,7 +10,8 @@
 namespace sprekk::assembly {
 
 /// Linear map of the values of fields from a mesh of triangles or tetrahedra to a mesh with bisected cells. Each cell
-/// of the fine mesh has a parent in the coarse mesh, which contains it.
+/// of the fine mesh has a parent in the coarse mesh, which contains it. A parent that contains its cell only
+/// approximately, after nodes have moved, is extrapolated. New fracture faces without a parent face receive nothing.
 ///
 /// | entity        | value on the fine mesh                                              | amounts             |
 /// | node          | finite-element function of the parent at the node                   | -                   |

@@ -5,6 +5,30 @@
 
 namespace sprekk::mesh {
 
+/// Straight extension of a fracture from its tip, in 2D.
+struct Extension {
+  std::array<Real, 2> tip, direction;  ///< position, m; unit vector into the rock; zero: only bisect cells
+  Real length;                         ///< m
+  Real size;                           ///< largest edge of the cells within `length` of the new faces, m
+};
+
+/// Result of an extension: nothing, a new tip, or a junction with another fracture.
+enum class Extended { none, tip, junction };
+
+/// Rotation of the last extension of a fracture about its beginning, counter-clockwise, in 2D.
+struct Turn {
+  std::array<Real, 2> begin, tip;  ///< of the extension, m
+  Real angle;                      ///< rad
+};
+
+/// Change of a mesh: bisected cells, then extensions, then turns.
+struct MeshChange {
+  std::vector<GlobalIndex> cells = {};
+  std::vector<Extension> extensions = {};
+  std::vector<Turn> turns = {};
+  bool is_none() const { return cells.empty() && extensions.empty() && turns.empty(); }
+};
+
 /// Mesh of triangles or tetrahedra, refined by the bisection of Arnold, Mukherjee and Pouly (2000).
 ///
 /// The cutting plane contains the midpoint of the refinement edge and the corners not on this edge. Every face has a
@@ -28,6 +52,16 @@ class Bisection {
   /// that contains each new cell.
   std::vector<GlobalIndex> refine(const std::vector<GlobalIndex>& cells, int times = 1);
 
+  /// Bisects cells near the extension to its size. Then moves nodes to the line of the extension or splits edges that
+  /// cross it, and adds the edges along the line to the fracture at the tip. Nodes on fractures and boundaries do not
+  /// move. If the line ends at another fracture, or less than half of the length before it, the extension ends at a
+  /// node of this fracture. Otherwise nothing but the bisection is done if a fracture or a boundary lies within half of
+  /// the length, or if cells would become too flat. `parent` as in refine(), of all calls so far. 2D.
+  Extended extend(const Extension& extension, std::vector<GlobalIndex>& parent);
+  /// Rotates the nodes of an extension, and the nodes around it by a part of the angle. Returns false, without a
+  /// change, if cells would become too flat. 2D.
+  bool turn(const Turn& turn);
+
   /// Returns the present mesh, split along its fractures. Nodes preserve their numbers; copies of split nodes follow
   /// the new nodes. Children replace their parent in the order of cells. Cells of order 2 have straight edges.
   GlobalMesh mesh(int order = 1) const;
@@ -50,7 +84,10 @@ class Bisection {
   };
   class Middles;
   class Longest;
+  class Patch;
 
+  void refine_near(const Extension& extension, Real size, std::vector<GlobalIndex>& parent);
+  bool add_path(const Extension& extension, Real size, std::vector<GlobalIndex>& parent);
   void take_faces(const GlobalMesh& mesh);
   void mark_edges();
   Cell child(const Cell& parent, int keeps, GlobalIndex middle) const;

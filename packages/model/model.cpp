@@ -31,6 +31,27 @@ T& named(std::vector<T>& all, const std::string& name, const Name& name_of, cons
                           base::did_you_mean(name, names)));
 }
 
+/// Changes of a mesh in a checkpoint: the cells, or the cells followed by the numbers of extensions and turns.
+nlohmann::json to_json(const std::vector<mesh::MeshChange>& changes) {
+  auto all = nlohmann::json::array();
+  for (const auto& one : changes) {
+    auto extensions = nlohmann::json::array(), turns = nlohmann::json::array();
+    for (const auto& e : one.extensions) extensions.push_back({e.tip, e.direction, e.length, e.size});
+    for (const auto& t : one.turns) turns.push_back({t.begin, t.tip, t.angle});
+    all.push_back(extensions.empty() && turns.empty() ? nlohmann::json(one.cells)
+                                                      : nlohmann::json{one.cells, extensions, turns});
+  }
+  return all;
+}
+
+mesh::MeshChange mesh_change(const nlohmann::json& saved) {
+  if (saved.empty() || !saved[0].is_array()) return {saved.get<std::vector<GlobalIndex>>()};
+  mesh::MeshChange change{saved[0].get<std::vector<GlobalIndex>>()};
+  for (const auto& e : saved[1]) change.extensions.push_back({e[0], e[1], e[2], e[3]});
+  for (const auto& t : saved[2]) change.turns.push_back({t[0], t[1], t[2]});
+  return change;
+}
+
 /// Key of the unknowns of a block in a checkpoint.
 std::string key_of(const fields::Block& block) { return "unknowns: " + block.name; }
 
@@ -72,14 +93,14 @@ void check_ends(const Scene& scene, const mesh::Mesh& mesh) {
 /// Throws an Error if the scene refines the mesh during the run and a module cannot follow.
 void check_transfer(const Scene& scene, const std::vector<std::unique_ptr<assembly::Module>>& modules,
                     const mesh::Mesh& mesh) {
-  if (!scene.accuracy || !scene.accuracy->refines_during_run()) return;
+  const bool refines = scene.accuracy && scene.accuracy->refines_during_run();
+  if (!refines && !scene.growth) return;
+  const std::string place = refines ? "Accuracy > \"refinement\": is \"during the run\"," : "Growth: is";
   for (const auto& module : modules)
     for (const auto& history : module->declare(mesh).history)
-      SPREKK_CHECK(
-          history.is_transferred,
-          "{}: Sprekk > Accuracy > \"refinement\": is \"during the run\", not available with {}: \"{}\" has no "
-          "values on a refined mesh",
-          scene.origin, module->name(), history.name);
+      SPREKK_CHECK(history.is_transferred,
+                   "{}: Sprekk > {} not available with {}: \"{}\" has no values on a refined mesh", scene.origin, place,
+                   module->name(), history.name);
 }
 
 }  // namespace
@@ -215,22 +236,30 @@ void Model::change(const Scene& changed) {
   replace(std::move(system), std::move(x));
 }
 
-void Model::refine(const std::vector<GlobalIndex>& cells) {
+std::vector<int> Model::change_mesh(const mesh::MeshChange& change) {
   SPREKK_CHECK(scene_.bisection, "{}: the mesh of a model without Scene::bisection cannot be refined", scene_.origin);
   const auto scope = timers_->scope("refinement");
   const auto comm = whole_mesh_->comm;
   std::vector<GlobalIndex> parent;  // on rank 0
+  std::vector<int> made(change.extensions.size() + change.turns.size(), 0);
   base::collectively(*comm, [&] {
-    if (auto& bisection = *scene_.bisection) parent = bisection->refine(cells, mesh().dim());
+    auto& bisection = *scene_.bisection;
+    if (!bisection) return;
+    parent = bisection->refine(change.cells, mesh().dim());
+    std::size_t k = 0;
+    for (const auto& one : change.extensions) made[k++] = static_cast<int>(bisection->extend(one, parent));
+    for (const auto& one : change.turns) made[k++] = bisection->turn(one);
   });
+  if (!made.empty()) made = base::sum_over_ranks(*comm, made);
   auto prepared = model::prepared(scene_);
   std::string unconstrained;
   whole_mesh_ = make_whole_mesh(prepared, comm, unconstrained);
   auto system = make_system(drafted(std::move(prepared.value), unconstrained));
   auto x = system->initial();
   transfer({mesh(), system->mesh(), parent}, *system_, x_, *system, x);
-  refinements_.push_back(cells);
+  mesh_changes_.push_back(change);
   replace(std::move(system), std::move(x));
+  return made;
 }
 
 void Model::replace(std::unique_ptr<assembly::System> system, fields::BlockVector x) {
@@ -333,7 +362,7 @@ io::Checkpoint Model::save() {
                         {"errors", memory.errors},
                         {"energy", memory.energy},
                         {"scene", fingerprint(scene_, *system_)},
-                        {"refinements", refinements_}};
+                        {"refinements", to_json(mesh_changes_)}};
   start_solver();
   return checkpoint;
 }
@@ -341,8 +370,8 @@ io::Checkpoint Model::save() {
 void Model::restore(const io::Checkpoint& checkpoint) {
   beginning_.reset();
   const auto& content = checkpoint.content;
-  const auto refinements = content.value("refinements", refinements_);
-  for (std::size_t k = refinements_.size(); k < refinements.size(); ++k) refine(refinements[k]);
+  const auto changes = content.value("refinements", nlohmann::json::array());
+  for (std::size_t k = mesh_changes_.size(); k < changes.size(); ++k) change_mesh(mesh_change(changes[k]));
   check_fingerprint(content.at("scene"), fingerprint(scene_, *system_));
   for (std::size_t b = 0; b < x_.size(); ++b)
     redistribute(*checkpoint.vectors.at(key_of(system_->blocks()[b])), *x_[b]);

@@ -48,12 +48,15 @@ class Model {
   /// "release" of Bulk. If both scenes are equal, the call has no effect. Unsupported changes throw an Error, and the
   /// model remains unchanged.
   void change(const Scene& changed);
-  /// Returns the number of effective calls of change() and refine(), each with a new system. Stored data.
+  /// Returns the number of effective calls of change() and change_mesh(), each with a new system. Stored data.
   int n_changes() const { return n_changes_; }
   /// Bisects cells, given on all ranks by their numbers in the mesh with all regions, into cells with edges half as
   /// long, and adjacent cells as necessary. The state is transferred, see transfer(); it counts as a change. Throws an
   /// Error if the scene has no Scene::bisection.
-  void refine(const std::vector<GlobalIndex>& cells);
+  void refine(const std::vector<GlobalIndex>& cells) { change_mesh({cells}); }
+  /// Like refine(), with extensions of fractures in 2D. New faces have their initial state. Returns for each
+  /// extension its mesh::Extended, for each turn whether it was made.
+  std::vector<int> change_mesh(const mesh::MeshChange& change);
 
   /// Finds an equilibrium at time() after changes of the scene, of fields or of host modules. Behaves otherwise like
   /// step_to(). Throws an Error in models with storage, which requires time.
@@ -131,8 +134,8 @@ class Model {
   fields::BlockVector x_;
   Real time_ = 0;
   int n_changes_ = 0;
-  std::vector<std::vector<GlobalIndex>> refinements_;  ///< cells of all calls of refine()
-  std::optional<Beginning> beginning_;                 // of the last step
+  std::vector<mesh::MeshChange> mesh_changes_;  ///< of all calls of change_mesh()
+  std::optional<Beginning> beginning_;          // of the last step
 };
 
 /// Makes the modules of a scene, which together form its equation system. Collective.

@@ -124,6 +124,7 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
             "--restart");
         adaptation.prepare(scene, comm);
       }
+      if (scene.growth) scene.bisection = std::make_shared<std::optional<mesh::Bisection>>();
       auto model = std::make_unique<Model>(scene, comm);
       const Probes probes(*model);  // checks that the places exist
       if (options.strict) base::throw_errors(model->warnings());
@@ -196,15 +197,17 @@ void judge(const Model& model, Results& results, Adaptation& adaptation, base::L
   for (const auto& verdict : adaptation.verdicts()) log.info("{}", verdict.line());
 }
 
-/// Takes the next step. While its errors exceed the tolerances of Accuracy, the mesh is refined and the step repeated.
-StepTaken take_step(Model& model, Steps& steps, Adaptation& adaptation, base::Log& log) {
+/// Takes the next step. While its errors exceed the tolerances of Accuracy, or fractures grow, the mesh is changed and
+/// the step repeated.
+StepTaken take_step(Model& model, Steps& steps, Adaptation& adaptation, Tips& tips, base::Log& log) {
   for (;;) {
     auto taken = steps.take();
     if (!taken.report.converged || taken.report.stopped) return taken;
-    const auto cells = adaptation.cells_for_step(model, taken.begin);
-    if (cells.empty()) return taken;
+    mesh::MeshChange change{adaptation.cells_for_step(model, taken.begin)};
+    if (change.is_none()) change = tips.for_step(model, taken.begin, log);
+    if (change.is_none()) return taken;
     steps.take_back();
-    model.refine(cells);
+    tips.note(model.change_mesh(change), log);
     log.info("t = {:.6g}: the step to {:.6g} is repeated on a mesh of {} cells", taken.begin, taken.end,
              model.mesh().n_global_cells);
   }
@@ -216,11 +219,13 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
   const Scene& scene = model.scene();
   if (!steps.any()) log.info("nothing to do: the checkpoint at t = {} is at or after the last step", model.time());
   Progress progress(log, model.setting(), steps, results);
+  Tips tips;
+  or_finished(results, [&] { tips.begin(model); });
   std::string floating;
   while (steps.any()) {
     bool interrupted = false;
     const auto taken = or_finished(results, [&] {
-      auto taken = naming_file(scene.origin, [&] { return take_step(model, steps, adaptation, log); });
+      auto taken = naming_file(scene.origin, [&] { return take_step(model, steps, adaptation, tips, log); });
       const auto& step = taken.report;
       bool last = !steps.any();
       interrupted = step.stopped || (!last && step.converged && base::any_rank(*model.mesh().comm, should_stop));

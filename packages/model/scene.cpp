@@ -89,6 +89,9 @@ void Scene::describe(base::Section& s) {
   if (s.is_sound() && !s.documents()) check_stages(s, stages, time.start);
   s.section(accuracy, "Accuracy", "quantities of interest with tolerances, on meshes that the run refines");
   if (accuracy && s.is_sound() && !s.documents()) check_accuracy(s);
+  s.section(growth, "Growth",
+            "growth of fractures with a \"toughness\" along free paths through triangles; only fractures may store");
+  if (growth && s.is_sound() && !s.documents()) check_growth(s);
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
 }
 
@@ -111,6 +114,29 @@ void Scene::check_accuracy(base::Section& s) const {
   if (!stages.empty()) fail("Stages", "must be absent");
   if (time.chooses_steps())
     fail(time.tolerance ? "Time > \"tolerance\"" : "Time > \"target Newton iterations\"", "must be absent");
+}
+
+/// Reports entries incompatible with growing fractures.
+void Scene::check_growth(base::Section& s) const {
+  const auto fail_if = [&](bool fails, const std::string& entry, const std::string& what) {
+    if (fails) s.fail_inside(fmt::format("{}, {} with \"Growth\"", entry, what));
+  };
+  const std::string section = mesh_file ? "Mesh file" : "Mesh";
+  fail_if(!mesh_file && mesh.cell != "triangle", fmt::format("Mesh > \"cell\": is {}", mesh.cell), "must be triangle");
+  fail_if(refinements() > 0, fmt::format("{} > \"refinements\": is {}", section, refinements()), "must be 0");
+  fail_if(!(mesh_file ? mesh_file->periodic : mesh.periodic).empty(), section + " > \"periodic\": is given",
+          "must be absent");
+  fail_if(accuracy.has_value(), "Accuracy: is given", "must be absent");
+  fail_if(output.events.has_value(), "Output > \"events\": is given", "must be absent");
+  fail_if(!stages.empty(), "Stages: is given", "must be absent");
+  fail_if(std::none_of(fractures.begin(), fractures.end(), [](const auto& one) { return one.second.toughness; }),
+          "Fractures: none has a \"toughness\"", "which a fracture needs to grow,");
+  auto facets = physics::Facets::none;
+  physics::for_each_physics([&](auto physics) { facets = std::max(facets, physics.needs_facets(*this)); });
+  physics::for_each_physics([&]<physics::HasRates P>(P) {
+    fail_if(facets == physics::Facets::all && P::Rates::exist(*this), "Bulk: the rock stores transported quantities",
+            "which is not available");
+  });
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "mesh/box.hpp"
 #include "mesh/mesh.hpp"
 #include "model/accuracy.hpp"
+#include "model/growth.hpp"
 #include "model/network.hpp"
 #include "model/stages.hpp"
 #include "physics/scene.hpp"
@@ -76,7 +77,9 @@ struct Scene : physics::Scene {
   Output output;
   Stages stages;
   std::optional<Accuracy> accuracy;
-  /// Bisected mesh of `accuracy`, on the rank that makes the mesh. Null or empty before the first bisection.
+  std::optional<Growth> growth;
+  /// Bisected mesh of `accuracy` or `growth`, on the rank that makes the mesh. Null or empty before the first
+  /// bisection.
   std::shared_ptr<std::optional<mesh::Bisection>> bisection;
 
   void describe(base::Section& section);
@@ -93,6 +96,7 @@ struct Scene : physics::Scene {
  private:
   void add_default_joints();  ///< for fractures of the mesh without a material
   void check_accuracy(base::Section& section) const;
+  void check_growth(base::Section& section) const;
   mesh::Bisection bisected() const;  ///< initial state, without bisections
 };
 

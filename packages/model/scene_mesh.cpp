@@ -54,7 +54,7 @@ int Scene::order() const { return mesh_file ? mesh_file->order.value_or(1) : mes
 
 mesh::Bisection Scene::bisected() const {
   const auto coarse = read_mesh();
-  SPREKK_CHECK(mesh::is_simplex(coarse.shape), "Sprekk > {}, must be {} with \"Accuracy\"",
+  SPREKK_CHECK(mesh::is_simplex(coarse.shape), "Sprekk > {}, must be {} with \"Accuracy\" or \"Growth\"",
                mesh_file ? fmt::format("Mesh file > \"path\": {} has other cells", mesh_file->path)
                          : fmt::format("Mesh > \"cell\": is {}", mesh.cell),
                mesh::dimension(coarse.shape) == 2 ? "triangle" : "tetrahedron");

@@ -48,13 +48,18 @@ class MeasureTest : public NOX::StatusTest::Generic {
     status_ = NOX::StatusTest::Unconverged;
     if (report_.iterations == 0) balances_.start(report_.measures, options_.tolerance);
     balances_.note(group.f());
-    const bool within_tolerance = value <= options_.tolerance && !(picard_.lags() && picard_.n_steps() > 0);
+    const bool is_hidden = value <= options_.tolerance && report_.iterations > 0 &&
+                           balances_.imbalance(group.x()) > BalanceCheck::largest_hidden;
+    const bool within_tolerance =
+        value <= options_.tolerance && !is_hidden && !(picard_.lags() && picard_.n_steps() > 0);
     if (!std::isfinite(group.getNormF())) {
       fail("the residual is not finite");
     } else if (within_tolerance) {
       if (!needs_another_iteration(group)) status_ = NOX::StatusTest::Converged;
     } else if (!accepted_.empty()) {
       fail("an additional iteration has larger errors");
+    } else if (is_hidden && report_.iterations >= options_.max_iterations) {
+      fail(fmt::format("the sum of a balance exceeds its flows after {} iterations", report_.iterations));
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));
     } else if ((picard_.lags() && picard_.n_steps() >= max_lagged) ||

@@ -73,7 +73,7 @@ void compare_prescribed_slip(Comparison& c, const std::string& name, const Presc
 
 void compare_fractures(Comparison& c) {
   for (const auto& [name, fracture] : c.scene().fractures) {
-    if (fracture.stress_intensity)
+    if (fracture.stress_intensity || fracture.toughness)
       compare_stress_intensity(c, fmt::format("Fractures > {} > \"stress intensity\"", name));
     if (fracture.prescribed_slip) compare_prescribed_slip(c, name, *fracture.prescribed_slip);
     const std::string jump = fmt::format("Fractures > {} > \"plastic jump\"", name);

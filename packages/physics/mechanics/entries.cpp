@@ -135,6 +135,10 @@ void Mechanics::Fracture::describe(base::Section& s) {
   s.entry(stress_intensity, "stress intensity", "-",
           "switch for stress intensity factors and energy release rates at the tips, in 3D along the front, written to "
           "results.json and stress_intensity.csv");
+  entry_of_place(
+      s, toughness, "toughness", "Pa*m^0.5", base::positive(),
+      "intensity of the largest hoop stress at which a tip grows, a value or an expression of x, y; includes "
+      "\"stress intensity\"; 2D; see the section \"Growth\"");
   s.section(prescribed_slip, "prescribed slip", "slip as a function of position and time, in place of friction");
 }
 

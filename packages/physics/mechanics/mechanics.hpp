@@ -80,8 +80,9 @@ struct Mechanics : Physics<Mechanics> {
     std::optional<base::Expression> slip_path;       ///< path length of the initial slip, m; of joints in situ
     std::vector<base::Expression> initial_traction;  ///< of the contact in the face frame, Pa; empty: as in the rock
     std::optional<PrescribedSlip> prescribed_slip;
-    std::optional<base::Expression> unbroken;  ///< above 0: bonded at the start, see unbroken.hpp
-    bool stress_intensity = false;             ///< table of StressIntensity
+    std::optional<base::Expression> unbroken;   ///< above 0: bonded at the start, see unbroken.hpp
+    bool stress_intensity = false;              ///< table of StressIntensity
+    std::optional<base::Expression> toughness;  ///< Pa m^0.5; the table then has directions of growth
     void describe(base::Section& section);
   };
 

@@ -4,7 +4,9 @@
 #include "assembly/system.hpp"
 #include "assembly/tip_cell.hpp"
 #include "base/check.hpp"
+#include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
+#include "laws/kink.hpp"
 #include "physics/mechanics/front_fields.hpp"
 #include "physics/mechanics/front_loads.hpp"
 #include "physics/scene.hpp"
@@ -404,6 +406,19 @@ class StressIntensity final : public estimate::TableOfStates {
       return std::sqrt(square);
     });
     column("radius", "m", [&](auto p) { return fronts_[p].radius; });
+    const auto& fractures = setting_.scene.fractures;
+    if (dim == 3 || std::none_of(fractures.begin(), fractures.end(), [](auto& one) { return one.second.toughness; }))
+      return table;
+    const auto kink = [&](auto p) { return laws::largest_hoop(K[p][0], K[p][1]); };
+    column("K_hoop", unit, [&](auto p) { return kink(p).intensity; });
+    column("toughness", unit, [&](auto p) {
+      const auto& one = fractures.at(mesh_.fracture_names[mesh_.single_fractures[fronts_[p].single].set]).toughness;
+      return one ? base::value_at("toughness", *one, base::positive(), fronts_[p].x) : std::nan("");
+    });
+    for (int i = 0; i < 2; ++i)
+      column(i == 0 ? "kink_x" : "kink_y", "-", [&](auto p) {
+        return std::cos(kink(p).angle) * fronts_[p].ahead[i] + std::sin(kink(p).angle) * fronts_[p].normal[i];
+      });
     return table;
   }
 
@@ -426,7 +441,8 @@ class StressIntensity final : public estimate::TableOfStates {
 std::unique_ptr<estimate::TableOfStates> make_stress_intensity(const Setting& setting, assembly::System& system) {
   const auto& [scene, mesh, start] = setting;
   std::vector<char> requested;
-  for (const auto& name : mesh.fracture_names) requested.push_back(scene.fractures.at(name).stress_intensity);
+  for (const auto& name : mesh.fracture_names)
+    requested.push_back(scene.fractures.at(name).stress_intensity || scene.fractures.at(name).toughness);
   if (std::count(requested.begin(), requested.end(), 1) == 0) return nullptr;
   const auto fail_if = [&, &scene = scene](bool fails, const char* why) {
     SPREKK_CHECK(!fails, "{}: Sprekk > Fractures: \"stress intensity\" {}", scene.origin, why);

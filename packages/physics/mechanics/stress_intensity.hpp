@@ -29,6 +29,9 @@ namespace sprekk::physics {
 /// Second estimate: mean jumps of the faces at the front point, as if they were of the crack fields, [[u]] = 8 K/E'
 /// sqrt(r/(2 pi)). error = |K - K of the second estimate|, over all modes.
 ///
+/// With a "toughness", in 2D: columns K_hoop and kink_x, kink_y, the intensity of the largest hoop stress and its
+/// direction (laws::largest_hoop()), and `toughness` at the tip.
+///
 /// Throws an Error for periodic meshes, and after changes of elastic constants or a backfill. Collective.
 std::unique_ptr<estimate::TableOfStates> make_stress_intensity(const Setting& setting, assembly::System& system);
 

@@ -119,6 +119,31 @@ INSTANTIATE_TEST_SUITE_P(All, RefinedCells,
                                            Cell{"tetrahedron", 2}),
                          [](const auto& one) { return fmt::format("{}{}", one.param.first, one.param.second); });
 
+/// A fracture that grows: nodes have moved out of their parents, also those of a turned extension.
+TEST(Refinement, KeepsLinearFunctionsAroundGrowingTips) {
+  for (const int order : {1, 2}) {
+    model::Model model(block("triangle", order, true), Tpetra::getDefaultComm());
+    const auto exact = [](const Vector& x, int i) { return 1e-3 * ((i + 1) * (1 + x[0] - 2 * x[1])); };
+    set(model, "displacement", [&](LocalIndex node, int i) { return exact(point(model.mesh(), node), i); });
+    const Real c = std::cos(0.6), s = std::sin(0.6);
+    const mesh::Extension extension{{0.5, 0.5}, {c, s}, 0.2, 0.08};
+    const auto made = model.change_mesh({{}, {extension}, {{{0.5, 0.5}, {0.5 + 0.2 * c, 0.5 + 0.2 * s}, 0.15}}});
+    EXPECT_EQ(made, std::vector<int>(2, 1));
+    const auto u = values_of(model, "displacement");
+    const auto& mesh = model.mesh();
+    Real length = 0;
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) length += mesh.fracture_faces[f].area;
+    EXPECT_NEAR(base::sum_over_ranks(*mesh.comm, length), 0.7, 1e-12);
+    for (std::size_t node = 0; node < u.size(); ++node)
+      for (int i = 0; i < 2; ++i)
+        ASSERT_NEAR(u[node][i], exact(point(mesh, static_cast<LocalIndex>(node)), i), 1e-14) << order;
+    const auto moved = model.save();
+    model::Model other(block("triangle", order, true), Tpetra::getDefaultComm());
+    other.restore(moved);
+    EXPECT_EQ(values_of(other, "displacement"), u);
+  }
+}
+
 /// With u = 0 at the old nodes and the enrichment q, the function is (rho^(1/2) - rho) q. At a new node the enrichment
 /// is rho^(1/2) q, with rho = 1/2 at the middle of an edge at the tip, 1 on the opposite side of the old cell, and 3/4
 /// between them.

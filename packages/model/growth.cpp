@@ -1,0 +1,196 @@
+#include "model/growth.hpp"
+
+#include "base/log.hpp"
+#include "base/over_ranks.hpp"
+#include "base/parameters.hpp"
+#include "estimate/state_table.hpp"
+#include "mesh/facets.hpp"
+#include "model/model.hpp"
+#include "model/steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprekk::model {
+
+namespace {
+
+using Point = std::array<Real, 2>;
+
+constexpr int max_turns = 5;
+constexpr Real largest_turn = 0.35;  // rad
+constexpr Real together = 0.98;      // ratio to the largest intensity/toughness, of tips that grow together
+
+Real distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
+
+/// Largest edge of the cells near new faces. Cells have right angles.
+Real new_size(const Growth& growth) { return 1.45 * growth.segment / growth.faces; }
+
+/// Angle from a - begin to a direction, rad.
+Real angle_between(const Point& begin, const Point& tip, const Point& direction) {
+  const Real x = tip[0] - begin[0], y = tip[1] - begin[1];
+  return std::atan2(x * direction[1] - y * direction[0], x * direction[0] + y * direction[1]);
+}
+
+}  // namespace
+
+void Growth::describe(base::Section& s) {
+  s.required(segment, "segment", "m", base::positive(), "length of each extension of a fracture");
+  s.entry(faces, "faces", "-", base::at_least(2), "number of faces of an extension");
+  s.entry(turn, "largest angle", "degree", base::greater_than(0).to(20),
+          "largest angle between an extension and the direction of growth at its new tip; extensions are turned until "
+          "it is smaller");
+  s.entry(largest, "extensions per step", "-", base::at_least(1),
+          "maximum number of extensions of a tip in a time step; a tip that would grow further causes a warning");
+}
+
+std::vector<Tips::Tip> Tips::tips_of(Model& model) const {
+  std::vector<Tip> tips;
+  physics::for_each_physics([&]<physics::HasTables P>(P) {
+    const auto make = P::Tables::table(model.setting(), model.system());
+    if (!make) return;
+    const auto table = (*make)({model.state(), model.time(), model.system().outputs(model.state())});
+    const auto column = [&](const std::string& name) -> const std::vector<Real>* {
+      for (const auto& one : table.columns)
+        if (one.name == name) return &one.values;
+      return nullptr;
+    };
+    const auto *x = column("x"), *y = column("y"), *K = column("K_hoop"), *toughness = column("toughness"),
+               *kink_x = column("kink_x"), *kink_y = column("kink_y");
+    if (!K || !toughness || !kink_x || !kink_y) return;
+    for (std::size_t k = 0; k < K->size(); ++k)
+      if (!std::isnan((*toughness)[k]))
+        tips.push_back({{(*x)[k], (*y)[k]}, {(*kink_x)[k], (*kink_y)[k]}, (*K)[k] / (*toughness)[k]});
+  });
+  return tips;
+}
+
+void Tips::begin(Model& model) {
+  const auto& growth = model.scene().growth;
+  if (!growth) return;
+  const auto& mesh = model.mesh();
+  mesh::MeshChange change;
+  for (const auto& tip : tips_of(model)) {
+    const bool is_coarse = base::any_rank(*mesh.comm, [&] {
+      for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+        for (const int k : {0, 1}) {
+          const auto x = mesh::face_corner(mesh, f, k);
+          if (mesh.fracture_faces[f].area > new_size(*growth) && distance({x[0], x[1]}, tip.x) < 1e-9 * growth->segment)
+            return true;
+        }
+      return false;
+    });
+    if (is_coarse) change.extensions.push_back({tip.x, {0, 0}, growth->segment, new_size(*growth)});
+  }
+  if (!change.is_none()) model.change_mesh(change);
+}
+
+mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
+  change_ = {};
+  turned_.clear();
+  const auto& growth = model.scene().growth;
+  if (!growth) return change_;
+  const auto scope = model.timers().scope("growth");
+  if (!in_step_ || begin != begin_) {
+    segments_.clear();
+    n_rounds_ = 0;
+  }
+  in_step_ = true;
+  begin_ = begin;
+  const auto tips = tips_of(model);
+  turn(*growth, tips);
+  if (change_.is_none()) extend(*growth, tips);
+  for (const auto& tip : tips)
+    if (change_.is_none() && std::isnan(tip.ratio) && may_grow(tip.x)) {
+      arrested_.push_back(tip.x);
+      log.warning(
+          "t = {:.6g}: the tip at ({:.6g}, {:.6g}) cannot grow: it has no K, because another fracture, a boundary "
+          "or another rock is too near",
+          model.time(), tip.x[0], tip.x[1]);
+    }
+  if (!change_.extensions.empty() && n_rounds_++ == growth->largest) {
+    const auto& tip = change_.extensions[0].tip;
+    log.warning(
+        "t = {:.6g}: the tip at ({:.6g}, {:.6g}) would grow further than the \"extensions per step\": growth is "
+        "unstable at this load",
+        model.time(), tip[0], tip[1]);
+    change_ = {};
+  }
+  for (const auto& one : change_.extensions)
+    log.info("t = {:.6g}: the tip at ({:.6g}, {:.6g}) grows by {:.4g} m along ({:.4f}, {:.4f})", model.time(),
+             one.tip[0], one.tip[1], one.length, one.direction[0], one.direction[1]);
+  return change_;
+}
+
+/// Adds turns of the extensions that disagree with the direction of growth at their tips, by the secant method. The
+/// slope of the angle between both over the turn is -1 for straight cracks under tension, about -3 for wings of a flaw
+/// that slides.
+void Tips::turn(const Growth& growth, const std::vector<Tip>& tips) {
+  for (std::size_t k = 0; k < segments_.size(); ++k) {
+    auto& one = segments_[k];
+    const auto tip = std::min_element(tips.begin(), tips.end(), [&](const Tip& a, const Tip& b) {
+      return distance(a.x, one.tip) < distance(b.x, one.tip);
+    });
+    const bool found = tip != tips.end() && distance(tip->x, one.tip) < 1e-3 * growth.segment;
+    if (one.is_settled || !found || !(tip->ratio > 0) || one.n_turns == max_turns) {
+      one.is_settled = true;
+      continue;
+    }
+    const Real angle = angle_between(one.begin, one.tip, tip->direction);
+    if (std::abs(angle) <= growth.turn * M_PI / 180) {
+      one.is_settled = true;
+      continue;
+    }
+    const Real slope = one.n_turns == 0 ? -2.5 : std::clamp<Real>((angle - one.angle) / one.turned, -6, -0.7);
+    one.angle = angle;
+    one.turned = std::clamp(-angle / slope, -largest_turn, largest_turn);
+    ++one.n_turns;
+    change_.turns.push_back({one.begin, one.tip, one.turned});
+    turned_.push_back(k);
+  }
+}
+
+bool Tips::may_grow(const Point& x) const {
+  return std::none_of(arrested_.begin(), arrested_.end(), [&](const Point& one) { return distance(one, x) < 1e-9; });
+}
+
+void Tips::extend(const Growth& growth, const std::vector<Tip>& tips) {
+  Real largest = 0;
+  for (const auto& tip : tips)
+    if (may_grow(tip.x) && tip.ratio > largest) largest = tip.ratio;
+  if (largest < 1) return;
+  for (const auto& tip : tips)
+    if (may_grow(tip.x) && tip.ratio >= std::min<Real>(1, together * largest))
+      change_.extensions.push_back({tip.x, tip.direction, growth.segment, new_size(growth)});
+}
+
+void Tips::note(const std::vector<int>& made, base::Log& log) {
+  std::size_t k = 0;
+  for (const auto& one : change_.extensions) {
+    const auto result = static_cast<mesh::Extended>(made[k++]);
+    if (result == mesh::Extended::junction) {
+      log.info("the tip at ({:.6g}, {:.6g}) has met another fracture", one.tip[0], one.tip[1]);
+    } else if (result == mesh::Extended::tip) {
+      segments_.push_back(
+          {one.tip, {one.tip[0] + one.length * one.direction[0], one.tip[1] + one.length * one.direction[1]}});
+    } else {
+      arrested_.push_back(one.tip);
+      log.warning(
+          "the tip at ({:.6g}, {:.6g}) ends its growth: a fracture or a boundary is nearer than half of the "
+          "\"segment\", or cells would be too flat",
+          one.tip[0], one.tip[1]);
+    }
+  }
+  for (const std::size_t s : turned_) {
+    auto& one = segments_[s];
+    if (!made[k++]) {
+      one.is_settled = true;
+      continue;
+    }
+    const Real c = std::cos(one.turned), s_ = std::sin(one.turned), x = one.tip[0] - one.begin[0],
+               y = one.tip[1] - one.begin[1];
+    one.tip = {one.begin[0] + c * x - s_ * y, one.begin[1] + s_ * x + c * y};
+  }
+}
+
+}  // namespace sprekk::model

@@ -1,0 +1,69 @@
+// Growth of fractures along free paths in 2D: section Growth of a scene, and changes of the mesh during a step.
+#pragma once
+
+#include "mesh/bisect.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace sprekk::base {
+class Section;
+class Log;
+}  // namespace sprekk::base
+
+namespace sprekk::model {
+
+class Model;
+
+/// Section Growth of a scene. The fractures that may grow have an entry of their physics, the toughness.
+struct Growth {
+  Real segment = 0;  ///< length of an extension, m
+  int faces = 4;     ///< of an extension
+  Real turn = 2;     ///< largest remaining angle between the last extension and the direction of growth, degree
+  int largest = 20;  ///< extensions of a tip in a step
+  void describe(base::Section& section);
+};
+
+/// Growth of the tips of a model. A step is repeated on a changed mesh until no tip would grow. Collective.
+class Tips {
+ public:
+  /// Bisects the cells at the tips to the size of new faces, before the first step.
+  void begin(Model& model);
+  /// Returns the change of the mesh with which the step from `begin` is repeated; none: the step is complete.
+  ///
+  /// Columns of a table of the physics define the growth: position x, y, intensity K_hoop, `toughness`, and direction
+  /// kink_x, kink_y of growth, of each tip. First the last extensions are turned until they agree with the direction of
+  /// growth at their new tips. Then all tips with K_hoop >= toughness grow by an extension, together with those of the
+  /// same ratio up to 2 %.
+  mesh::MeshChange for_step(Model& model, Real begin, base::Log& log);
+  /// Notes which extensions and turns were made, in the order of the change.
+  void note(const std::vector<int>& made, base::Log& log);
+
+ private:
+  using Point = std::array<Real, 2>;
+  struct Tip {
+    Point x, direction;
+    Real ratio;  ///< intensity/toughness
+  };
+  struct Segment {
+    Point begin, tip;
+    Real angle = 0, turned = 0;  ///< to the direction of growth before the last turn; last turn, rad
+    int n_turns = 0;
+    bool is_settled = false;
+  };
+  std::vector<Tip> tips_of(Model& model) const;
+  void turn(const Growth& growth, const std::vector<Tip>& tips);
+  bool may_grow(const Point& tip) const;
+  void extend(const Growth& growth, const std::vector<Tip>& tips);
+
+  Real begin_ = 0;
+  bool in_step_ = false;
+  int n_rounds_ = 0;                 ///< of extensions in the step
+  std::vector<Segment> segments_;    ///< of the step
+  std::vector<Point> arrested_;      ///< tips without room
+  mesh::MeshChange change_;          ///< last one
+  std::vector<std::size_t> turned_;  ///< segments of its turns
+};
+
+}  // namespace sprekk::model

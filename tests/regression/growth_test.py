@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Growth of fractures along free paths: wings of a flaw, a straight crack, ranks, restart, refused scenes: growth_test.py PROGRAM ROOT MPIEXEC"""
+
+import math
+
+from program import ProgramTest, main
+
+WINGS = "growth/wing_cracks_2d.xml"
+
+
+def tips(step):
+    """Returns (x, y, K_hoop) of the tips of a step, from left to right."""
+    table = step["stress_intensity"]
+    return sorted(zip(table["x"], table["y"], table["K_hoop"]))
+
+
+class Growth(ProgramTest):
+    def last_tip(self, output="out"):
+        return tips(self.results(output)["steps"][-1])[-1][:2]
+
+    def test_wings(self):
+        """Path with K_II = 0 from a boundary integral method (steps of 0.1): tips at the lengths 0.1 to 0.6 of the wings, and the load t at which they grow further."""
+        path = {1: (1.0290, 0.0957, 3.246), 2: (1.0662, 0.1885, 3.869), 4: (1.1578, 0.3662, 5.026), 6: (1.2647, 0.5352, 6.138)}
+        found = {}
+        for step in self.run_scene(WINGS, "Output.vtu=false")["steps"]:
+            (x0, y0, _), (x1, y1, K) = tips(step)
+            self.assertLess(math.hypot(x0 + x1, y0 + y1), 0.002)  # symmetric wings
+            n = round(math.hypot(x1 - 1, y1) / 0.1)
+            if n not in found and K > 0:  # K is proportional to the load
+                found[n] = (x1, y1, step["time"] * 1e6 / K)
+        for n, (x, y, load) in path.items():
+            self.assertLess(math.hypot(found[n][0] - x, found[n][1] - y), 0.005)
+            self.assertAlmostEqual(found[n][2], load, delta=0.01 * load)
+
+    STRAIGHT = ["Output.vtu=false", "Mesh.lower corner={0, -4}", "Mesh.upper corner={2, 4}", "Mesh.cells={10, 40}", "Growth.segment=0.05",
+                "Fractures.crack.toughness=1e6*(1 + 4*(x - 0.6))", "Time.schedule={1.4, 1.7, 2, 2.3, 2.6}",
+                "Boundary conditions.west.boundary=west", "Boundary conditions.west.displacement={0, free}",
+                "Boundary conditions.east.boundary=east", "Boundary conditions.east.displacement={0, free}"]
+
+    @staticmethod
+    def exact_length(load):
+        """Length at which K = s sqrt(2 W tan(pi a/2W)) of a half crack between rollers at 0 and W = 2 is the toughness, for s = 0.5 MPa t."""
+        a = 0.6
+        while 0.5e6 * load * math.sqrt(4 * math.tan(math.pi * a / 4)) > 1e6 * (1 + 4 * (a - 0.6)):
+            a += 1e-4
+        return a
+
+    def test_straight_growth(self):
+        """A toughness that increases with the length makes the growth stable: the length follows the load, also after a restart."""
+        for step in self.run_scene("growth/edge_crack_2d.xml", *self.STRAIGHT)["steps"]:
+            (x, y, K), = tips(step)
+            exact = self.exact_length(step["time"])
+            self.assertLess(abs(y), 0.01)
+            self.assertGreater(x, exact - 0.03)
+            self.assertLess(x, exact + 0.05 + 0.03)
+            self.assertLess(K, step["stress_intensity"]["toughness"][0])
+        self.assertGreater(x, 0.9)
+        sets = [word for one in [*self.STRAIGHT, "Output.checkpoints.steps=1"] for word in ("--set", one)]
+        self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--set", "Time.schedule={1.4, 1.7, 2}")
+        self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--restart")
+        self.assertLess(math.dist(self.last_tip("part"), (x, y)), 1e-6)
+
+    def test_ranks(self):
+        """The same path on one and on three ranks."""
+        tip = {}
+        for ranks in (1, 3):
+            self.run_scene("growth/edge_crack_2d.xml", *self.STRAIGHT, "Growth.segment=0.1", "Time.schedule={1.7}", ranks=ranks)
+            tip[ranks] = self.last_tip()
+        self.assertGreater(tip[1][0], 0.69)
+        self.assertLess(math.dist(tip[1], tip[3]), 1e-6)
+
+    def test_injection(self):
+        """A closed notch in impermeable rock: pressure of the first step, and length of the crack that contains the fluid with the pressure at its toughness."""
+        rate, residual, E, W = 1e-6, 1e-6, 32e9, 2
+        entries = [one for one in self.STRAIGHT if "toughness" not in one and "schedule" not in one]
+        steps = self.run_scene("growth/edge_crack_2d.xml", *entries, "Mesh.order=2", "Fractures.crack.toughness=1e6", "Time.schedule={2, 10, 20, 30, 40}",
+                               "Boundary conditions.top.traction={0, 0}", "Boundary conditions.bottom.traction={0, 0}", "Materials.rock.permeability={0}",
+                               f"Materials.joint.residual aperture={residual}", "Flow.viscosity=1e-6", "Flow.compressibility=4.5e-10", "Flow.initial pressure=0",
+                               f"Fractures.crack.source=x < 0.4 ? {rate}/0.4 : 0")["steps"]
+
+        def volume(a, pressure):  # opening of the half crack between rollers, from dv/da = 4 K^2/(E' p^2)
+            return -8 * W**2 / (math.pi * E) * pressure * math.log(math.cos(math.pi * a / 2 / W))
+        for step in steps:
+            (x, y, _), = tips(step)
+            crack, injected = step["fractures"]["crack"], rate * step["time"]
+            self.assertAlmostEqual(crack["fluid_volume"], injected + residual * x, delta=1e-3 * injected)  # and nothing else
+            self.assertAlmostEqual(volume(x, crack["mean_fracture_pressure"]), crack["fluid_volume"], delta=0.015 * crack["fluid_volume"])
+            a = 0.6
+            while volume(a, 1e6 / math.sqrt(2 * W * math.tan(math.pi * a / 2 / W))) < crack["fluid_volume"]:
+                a += 1e-4
+            self.assertGreater(x, a - 0.005)
+            self.assertLess(x, a + 0.05 + 0.005)
+        self.assertGreater(x, 0.79)
+
+    def test_unstable_growth(self):
+        """A constant toughness at a constant load: growth ends with a warning after the given number of extensions, then at the boundary."""
+        sets = [word for one in ["Output.vtu=false", "Growth.segment=0.2", "Growth.extensions per step=3", "Fractures.crack.toughness=5e5", "Time.steps=1"] for word in ("--set", one)]
+        errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *sets)[1]
+        self.assertIn("growth is unstable", errors)
+        (x, _, K), = tips(self.results()["steps"][-1])
+        self.assertAlmostEqual(x, 1.2, delta=0.01)
+        self.assertGreater(K, 5e5)
+        sets[-1] = "Time.steps=3"
+        errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *sets)[1]
+        self.assertIn("ends its growth: a fracture or a boundary", errors)
+
+    def test_junction(self):
+        """A crack that meets another fracture ends there; the load then opens both."""
+        wall = ["Mesh.fractures.wall.lower corner={1, -0.4}", "Mesh.fractures.wall.upper corner={1, 0.4}", "Fractures.wall.material=joint"]
+        steps = self.run_scene("growth/edge_crack_2d.xml", "Output.vtu=false", "Growth.segment=0.1", "Fractures.crack.toughness=5e5", "Time.steps=2", *wall)["steps"]
+        self.assertEqual(steps[-1]["stress_intensity"]["x"], [])
+        crack, other = (steps[-1]["fractures"][name] for name in ("crack", "wall"))
+        self.assertAlmostEqual(crack["area"], 1, delta=0.01)
+        self.assertAlmostEqual(other["area"], 0.8, delta=1e-9)
+        self.assertAlmostEqual(crack["area_open"], crack["area"], delta=1e-9)
+        self.assertGreater(other["max_opening"], 0.1 * crack["max_opening"])
+
+    def test_refused_scenes(self):
+        for entries, text in ((["Mesh.cell=quadrilateral"], "must be triangle"), (["Mesh.refinements=1"], "must be 0"),
+                              (["Output.events.rate=1"], "must be absent"), (["Growth.faces=1"], "must be at least 2")):
+            sets = [word for one in entries for word in ("--set", one)]
+            self.assertIn(text, self.call("check", self.scene(WINGS), *sets, expect=1)[1])
+        errors = self.call("check", self.scene("growth/edge_crack_2d.xml"), "--set", "Growth.segment=0.1", expect=1)[1]
+        self.assertIn("Fractures: none has a \"toughness\"", errors)
+
+
+if __name__ == "__main__":
+    main()
