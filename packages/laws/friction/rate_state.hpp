@@ -35,6 +35,12 @@ KOKKOS_INLINE_FUNCTION Real mean_decay_slope(Real m) {
   return sum;
 }
 
+/// Correction of ln theta for a slip rate that grows in a step by the factor exp(2e), in place of its mean. Of second
+/// order in the length of the step; with the derivatives in e and in ln m.
+struct Lag {
+  Real change, by_rate, by_slip;
+};
+
 /// Ageing law d theta/dt = 1 - V theta/L (Dieterich 1979), integrated over a step at constant slip rate. All functions:
 /// m is the slip of the step divided by L, r the length of the step divided by theta at its start.
 struct Ageing {
@@ -54,8 +60,13 @@ struct Ageing {
     const Real decay = std::exp(-m);
     return (r * mean_decay_slope(m) - decay) / (decay + r * mean_decay(m));
   }
-  /// Lower bound of slope() for all m, with the sign changed.
-  KOKKOS_INLINE_FUNCTION static Real steepest(Real) { return 1; }
+  /// Lower bound of slope() and of the derivative of lag() for all m, with the sign changed.
+  KOKKOS_INLINE_FUNCTION static Real steepest(Real) { return 1.5; }
+  /// See Lag.
+  KOKKOS_INLINE_FUNCTION static Lag lag(Real e, Real m, Real r) {
+    const Real w = -std::fmin(1, r) * m / (1 + m) / 6;
+    return {w * e, w, w * e / (1 + m)};
+  }
 };
 
 /// Slip law d theta/dt = -V theta/L ln(V theta/L) (Ruina 1983), likewise.
@@ -68,24 +79,34 @@ struct SlipEvolution {
     return log(m / r) * exponential_less_one(T(-m));
   }
   KOKKOS_INLINE_FUNCTION static Real slope(Real m, Real r) { return -mean_decay(m) - std::log(m / r) * std::exp(-m); }
-  KOKKOS_INLINE_FUNCTION static Real steepest(Real r) { return 1.1 + (r < 1 ? -std::log(r) : Real(0)); }
+  KOKKOS_INLINE_FUNCTION static Real steepest(Real r) { return 2.7 + (r < 1 ? -std::log(r) : Real(0)); }
+  KOKKOS_INLINE_FUNCTION static Lag lag(Real e, Real m, Real) {
+    const Real w = m / (1 + m);
+    return {-w * e * (w + e) / 6, -w * (w + 2 * e) / 6, -w * e * (2 * w + e) / (1 + m) / 6};
+  }
 };
 
 /// Regularised rate-and-state friction with radiation damping, Pa, under the compression N = -lambda_n:
 ///   b = N a asinh(V/(2 V0) exp(psi/a)) + eta V,  psi = f0 + b ln(V0 theta/L)
 /// (Rice, Lapusta and Ranjith 2001; Rice 1993). b = 0 for N <= 0 and for V = 0.
 ///
-/// V is the slip rate at the end of a step. It is extrapolated from the mean rates V_m of this step and of the step
-/// before, where r is the ratio of the step lengths, new to old:
-///   ln V = ln V_m + D tanh(d/D),  d = r/(1 + r) ln(V_m/V_m,old),  D = 2
-/// This is second-order accurate and exact for steady slip; tanh limits the extrapolation after abrupt changes. At the
-/// start, the initial slip rate replaces V_m,old, and r/(1 + r) = 1. theta is integrated exactly for the slip rate V_m.
+/// V is the slip rate at the end of a step. It is extrapolated from the mean rates V_m of this step and of the two
+/// steps before, with the step lengths dt, dt_1, dt_2, and r = dt/dt_1:
+///   ln V = ln V_m + e + c e^2/(e^2 + c^2),  e = D tanh(d/D),  d = r/(1 + r) ln(V_m/V_m,1),  D = 2
+/// e is of second order. c is the term of third order of a parabola through the logarithms at the middles of the steps,
+/// with the slope g at the middle of this step, the curvature k and h = (dt + dt_1)/2:
+///   c = k (h dt/4 + dt^2/12) - g^2 dt^2/24
+/// It includes the difference between the logarithm of a mean and the mean of the logarithm. Limits prevent large
+/// extrapolations after abrupt changes. The rate is exact for steady slip, and of third order for step lengths that
+/// vary smoothly. At the start, the initial slip rate replaces V_m,1, r/(1 + r) = 1 and c = 0. theta is integrated
+/// exactly for the slip rate V_m, and corrected for the change of the rate in the step, see Lag.
 ///
 /// Without a duration, the bound is that of the slip rate and state at the end of the last step.
 template <class Evolution>
 struct RateStateFriction {
-  /// ln(theta/theta_i); ln(V_m/V_i) of the last step; its length, s; ln(V/V_i) at its end
-  static constexpr int n_history = 4;
+  /// ln(theta/theta_i); ln(V_m/V_i) of the last step; its length, s; ln(V/V_i) at its end; ln(V_m/V_i) and length of
+  /// the step before
+  static constexpr int n_history = 6;
   Real direct = 0.01, evolution = 0.01;  ///< a, b
   Real distance = 1;                     ///< L, m
   Real reference_rate = 1e-6;            ///< V0, m/s
@@ -155,20 +176,23 @@ struct RateStateFriction {
     if (!(N > 0)) return T(0);
     if (!(at.duration > 0)) return of_rate(N, T(at.history[3]), T(at.history[0]));
     if (!(at.slip_of_step > 0)) return T(0);
-    const T mean = log(at.slip_of_step / (at.duration * initial_rate));
-    return of_rate(N, at_end(mean, at), T(at.history[0] + Evolution::change(T(at.slip_of_step / distance), ratio(at))));
+    const T mean = log(at.slip_of_step / (at.duration * initial_rate)), m = at.slip_of_step / distance;
+    const End end = at_end(value_of(mean), value_of(m), ratio(at), at.duration, at.history);
+    const T change = mean - value_of(mean);  // with derivatives
+    return of_rate(N, T(end.rate + end.rate_slope * change),
+                   T(at.history[0] + Evolution::change(m, ratio(at)) + end.state + end.state_slope * change));
   }
   /// Derivative of bound() in the slip of the step, Pa/m; slip and duration are positive.
   KOKKOS_INLINE_FUNCTION Real hardening(const Contact<Real>& at) const {
     const Real N = -at.lambda_n, slip = at.slip_of_step;
     if (!(N > 0) || !(slip > 0)) return 0;
-    const Real m = slip / distance, mean = std::log(slip / (at.duration * initial_rate)), end = at_end(mean, at),
-               bend = std::tanh(share(at) * (mean - at.history[1]) / limit),
-               by_mean = 1 + share(at) * (1 - bend * bend),
-               y = exponent(end, at.history[0] + Evolution::change(m, ratio(at))),
-               by_exponent = y > 0 ? 1 / std::sqrt(1 + std::exp(-2 * y)) : std::exp(y) / std::hypot(1, std::exp(y));
-    return (N * by_exponent * (direct * by_mean + evolution * m * Evolution::slope(m, ratio(at))) +
-            damping * initial_rate * std::exp(end) * by_mean) /
+    const Real m = slip / distance, r = ratio(at);
+    const End end = at_end(std::log(slip / (at.duration * initial_rate)), m, r, at.duration, at.history);
+    const Real y = exponent(end.rate, at.history[0] + Evolution::change(m, r) + end.state),
+               by_exponent = y > 0 ? 1 / std::sqrt(1 + std::exp(-2 * y)) : std::exp(y) / std::hypot(1, std::exp(y)),
+               by_state = m * Evolution::slope(m, r) + end.state_slope;
+    return (N * by_exponent * (direct * end.rate_slope + evolution * by_state) +
+            damping * initial_rate * std::exp(end.rate) * end.rate_slope) /
            slip;
   }
   /// Upper bound of the decrease of bound() by slip, divided by the compression, 1/m; at least a/L.
@@ -178,18 +202,19 @@ struct RateStateFriction {
   KOKKOS_INLINE_FUNCTION void commit(const Contact<Real>& at, const Numbers<Real>& history) const {
     if (!(at.duration > 0)) return;
     const Real slip = std::fmax(at.slip_of_step, at.duration * slowest),
-               mean = std::log(slip / (at.duration * initial_rate));
-    history[3] = at_end(mean, at);
-    history[0] += Evolution::change(slip / distance, ratio(at));
-    history[1] = mean;
-    history[2] = at.duration;
+               mean = std::log(slip / (at.duration * initial_rate)), m = slip / distance, r = ratio(at);
+    const End end = at_end(mean, m, r, at.duration, at.history);
+    const Real last[] = {mean, at.duration, end.rate, at.history[1], at.history[2]};
+    history[0] += Evolution::change(m, r) + end.state;
+    for (int k = 0; k < 5; ++k) history[k + 1] = last[k];
   }
 
-  /// Errors of ln V and of ln theta at the end of a step; negative in the first step. The error of ln V is that of its
-  /// extrapolation, from the deviation of ln V_m from the line through V_m,old and V_old. The error of ln theta is that
-  /// of a constant slip rate in the step. Perturbations of steady slip grow at most at the rate s = (b - a')/a' V/L,
-  /// a' = a + eta V/N (Rice and Ruina 1983, without stiffness); the error of their growth is (s dt)^2/12. Longer steps
-  /// suppress instabilities, since they are implicit.
+  /// Errors of ln V and of ln theta at the end of a step; negative in the first step. The error of ln V is that of an
+  /// extrapolation of second order, from the deviation of ln V_m from the line through V_m,1 and V_1. The error of
+  /// ln theta is that of a constant slip rate in the step. Both estimates are larger than the errors. Perturbations of
+  /// steady slip grow at most at the rate s = (b - a')/a' V/L, a' = a + eta V/N (Rice and Ruina 1983, without
+  /// stiffness); the error of their growth is (s dt)^2/12. Longer steps suppress instabilities, since they are
+  /// implicit.
   KOKKOS_INLINE_FUNCTION StepDefect defect_of_step(const Contact<Real>& at) const {
     const Real dt = at.duration, old = at.history[2];
     if (!(old > 0)) return {-1, -1, 0};
@@ -206,18 +231,38 @@ struct RateStateFriction {
   static constexpr Real limit = 2;         // D
   static constexpr Real slowest = 1e-100;  // m/s
 
-  /// r/(1 + r)
-  KOKKOS_INLINE_FUNCTION static Real share(const Contact<Real>& at) { return share(at.duration, at.history); }
-  KOKKOS_INLINE_FUNCTION static Real share(Real dt, const History& history) { return dt / (dt + history[2]); }
+  /// ln(V/V_i) and the correction of ln theta at the end of a step, and their derivatives in ln V_m.
+  struct End {
+    Real rate, rate_slope, state = 0, state_slope = 0;
+  };
   template <class T>
   KOKKOS_INLINE_FUNCTION Real ratio(const Contact<T>& at) const {
     return at.duration * std::exp(-log_initial_state() - at.history[0]);
   }
-  /// ln(V/V_i) at the end, from ln(V_m/V_i).
-  template <class T>
-  KOKKOS_INLINE_FUNCTION T at_end(const T& mean, const Contact<T>& at) const {
-    using std::tanh;
-    return mean + limit * tanh(share(at.duration, at.history) * (mean - at.history[1]) / limit);
+  /// `mean` is ln(V_m/V_i), m the slip of the step divided by L, r the length dt of the step divided by theta.
+  KOKKOS_INLINE_FUNCTION static End at_end(Real mean, Real m, Real r, Real dt, const History& history) {
+    const Real dt_1 = history[2], dt_2 = history[5], share = dt / (dt + dt_1);
+    const Real bend = std::tanh(share * (mean - history[1]) / limit), e = limit * bend, by = share * (1 - bend * bend);
+    End end{mean + e, 1 + by};
+    if (!(dt_1 > 0)) return end;
+    const Lag lag = Evolution::lag(e, m, r);
+    end.state = lag.change;
+    end.state_slope = lag.by_rate * by + lag.by_slip;
+    if (dt_2 > 0) add_third_order(mean, dt, history, e, by, end);
+    return end;
+  }
+  /// Adds c e^2/(e^2 + c^2); `by` is the derivative of e.
+  KOKKOS_INLINE_FUNCTION static void add_third_order(Real mean, Real dt, const History& history, Real e, Real by,
+                                                     End& end) {
+    const Real h = (dt + history[2]) / 2, h_1 = (history[2] + history[5]) / 2, s = (mean - history[1]) / h,
+               by_k = 2 / (h * (h + h_1)), k = 2 * (s - (history[1] - history[4]) / h_1) / (h + h_1), g = s + k * h / 2,
+               by_g = 1 / h + by_k * h / 2, weight = h * dt / 4 + dt * dt / 12, c = k * weight - g * g * dt * dt / 24,
+               by_c = by_k * weight - g * by_g * dt * dt / 12;
+    const Real q = e * e + c * c;
+    if (!(q > 0)) return;
+    const Real of_e = e * e / q, of_c = c * c / q;
+    end.rate += c * of_e;
+    end.rate_slope += of_e * (of_e - of_c) * by_c + 2 * of_c * e * c / q * by;
   }
   /// ln(V/(2 V0)) + psi/a from ln(V/V_i) and ln(theta/theta_i).
   template <class T>

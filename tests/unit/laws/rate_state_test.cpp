@@ -22,7 +22,7 @@ RateStateFriction<Evolution> typical_law() {
 }
 
 template <class T = Real>
-Contact<T> slipped(const T& slip, Real duration, const Real (&history)[4]) {
+Contact<T> slipped(const T& slip, Real duration, const Real (&history)[6]) {
   Contact<T> at;
   at.lambda_n = -N;
   at.slip_of_step = slip;
@@ -37,7 +37,7 @@ template <class Evolution>
 Real after_step(Real slip) {
   const auto law = typical_law<Evolution>();
   constexpr Real rate = 1e-5, tiny = 1e-18;
-  Real history[4] = {0, 0, 1, 0};
+  Real history[6] = {0, 0, 1, 0, 0, 1};
   law.commit(slipped(tiny, tiny / rate, history), {history});
   if (slip == 0) return law.bound(slipped(rate * 1e-16, 1e-16, history)) / N;
   return law.bound(slipped(slip, slip / rate, history)) / N;
@@ -60,7 +60,7 @@ TEST(RateState, HoldKnownExactly) {
   const auto law = typical_law<Ageing>();
   const std::pair<Real, Real> holds[] = {{1, .601429652697}, {100, .635968429092}, {1e4, .703631321690}};
   for (const auto& [duration, friction] : holds) {
-    Real history[4] = {};
+    Real history[6] = {};
     law.commit(slipped(Real(0), duration, history), {history});
     history[3] = 0;
     EXPECT_NEAR(law.bound(slipped(Real(0), 0, history)) / N, friction, 1e-12) << duration;
@@ -69,7 +69,7 @@ TEST(RateState, HoldKnownExactly) {
 
 TEST(RateState, StartsFromTheInitialFrictionCoefficient) {
   auto law = typical_law<Ageing>();
-  const Real history[4] = {};
+  const Real history[6] = {};
   for (const Real friction : {0.05, 0.584, 0.9}) {
     law.initial_friction = friction;
     EXPECT_NEAR(law.bound(slipped(Real(0), 0, history)) / N, friction, 1e-13);
@@ -85,7 +85,7 @@ TEST(RateState, IsFiniteFromSlowestToFastestSlip) {
     auto law = typical_law<Ageing>();
     law.initial_rate = rate;
     law.damping = 4.41e6;
-    const Real duration = 1e-3 * law.distance / rate, history[4] = {0, 0, duration, 0};
+    const Real duration = 1e-3 * law.distance / rate, history[6] = {0, 0, duration, 0, 0, duration};
     const auto at = slipped(rate * duration, duration, history);
     const Real logarithm = 0.6 - 0.005 * std::log(rate / 1e-6);
     if (logarithm > 0.05) {
@@ -94,7 +94,7 @@ TEST(RateState, IsFiniteFromSlowestToFastestSlip) {
     EXPECT_TRUE(std::isfinite(law.hardening(at)));
   }
   const auto law = typical_law<Ageing>();
-  const Real history[4] = {};
+  const Real history[6] = {};
   EXPECT_EQ(law.bound(slipped(Real(0), 1, history)), 0);
   auto tension = slipped(Real(1e-6), 1, history);
   tension.lambda_n = 1;
@@ -105,7 +105,7 @@ TEST(RateState, IsFiniteFromSlowestToFastestSlip) {
 TEST(RateState, ErrorOfTheGrowthOfInstabilities) {
   auto law = typical_law<Ageing>();
   law.damping = 5e6;
-  const Real history[4] = {0, 0, 1, 0};
+  const Real history[6] = {0, 0, 1, 0};
   const auto growth = [&](Real rate) { return law.defect_of_step(slipped(rate * 2, 2, history)).growth; };
   for (const Real rate : {1e-6, 0.02}) {
     const Real damped = 0.01 + 5e6 * rate / N, exact = std::pow((0.015 / damped - 1) * rate * 2 / 1e-5, 2) / 12;
@@ -123,7 +123,7 @@ void expect_hardening(const Law& law) {
   for (const Real state : {-20.0, 0.0, 15.0})
     for (const Real duration : {1e-3, 1.0, 1e6})
       for (Real slip = 1e-16; slip < 1; slip *= 30) {
-        const Real history[4] = {state, -3, 2 * duration, -2};
+        const Real before = std::exp(state / 10), history[6] = {state, -3, 2 * duration, -2, -3.5, before * duration};
         const auto at = slipped(slip, duration, history);
         const Real derivative = law.bound(slipped(Fad(1, 0, slip), duration, history)).dx(0);
         EXPECT_NEAR(law.hardening(at), derivative, 1e-8 * std::abs(derivative) + 1e-8 * N / slip * 1e-3)
@@ -146,7 +146,7 @@ void expect_residual(Real slip, Real duration) {
   auto friction = typical_law<Ageing>();
   friction.damping = 4.41e6;
   const JointLaw<LinearShear, RateStateFriction<Ageing>> law{{1e-11}, friction};
-  const Real history[4] = {1, 2, 0.5 * duration, 2.2};
+  const Real history[6] = {1, 2, 0.5 * duration, 2.2, 1.7, 0.4 * duration};
   auto at = slipped(slip, duration, history);
   const Real b = law.friction_bound(at), direction[] = {0.6, 0.8};
   Real old[dim - 1] = {};
@@ -194,7 +194,7 @@ TEST(RateState, ResidualVanishesForTheLawAndHasItsDerivatives) {
 TEST(RateState, RadiationDampingOfSlipWeakening) {
   const SlipWeakeningFriction friction{0.6, 0.4, 1e-3, 5e6};
   const JointLaw<LinearShear, SlipWeakeningFriction> law{{}, friction};
-  const Real history[4] = {2e-3}, old[1] = {}, duration = 1e-2, slip = 1e-3;
+  const Real history[6] = {2e-3}, old[1] = {}, duration = 1e-2, slip = 1e-3;
   const Real b = 0.4 * N + 5e6 * slip / duration;
   EXPECT_DOUBLE_EQ(law.friction_bound(slipped(slip, duration, history)), b);
   const Real w[] = {0, slip}, lambda[] = {-N, b}, slower[] = {0, slip / 2};

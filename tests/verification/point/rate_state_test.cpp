@@ -120,7 +120,7 @@ std::vector<PointState> slide(const std::string& law, Real stiffness, Real pull,
 }
 
 /// A stiff machine pulls ten times as fast as before. Errors of ln V at the end of the run, by the number of steps.
-TEST(RateStatePoint, IsOfSecondOrderInTheStepLength) {
+TEST(RateStatePoint, IsOfThirdOrderInTheStepLength) {
   for (const bool ageing : {true, false}) {
     const Slider slider{2 * k_c, 1e-5, ageing};
     const Real end = 1.5, exact = integrate(slider, {std::log(1e-6), std::log(10)}, end, 20000)[0];
@@ -130,9 +130,9 @@ TEST(RateStatePoint, IsOfSecondOrderInTheStepLength) {
           slide(ageing ? "rate and state" : "rate and state, slip law", 2 * k_c, 1e-5, 1e-6, 10, end, n);
       errors.push_back(std::abs(std::log(slip_rate(states.back())) - exact));
     }
-    EXPECT_LT(errors[2], 1e-4) << fmt::format("{}", fmt::join(errors, ", "));
-    EXPECT_GT(errors[0] / errors[1], 3.4) << fmt::format("{}", fmt::join(errors, ", "));
-    EXPECT_GT(errors[1] / errors[2], 3.4) << fmt::format("{}", fmt::join(errors, ", "));
+    EXPECT_LT(errors[2], 1e-5) << fmt::format("{}", fmt::join(errors, ", "));
+    EXPECT_GT(errors[0] / errors[1], 6) << fmt::format("{}", fmt::join(errors, ", "));
+    EXPECT_GT(errors[1] / errors[2], 6) << fmt::format("{}", fmt::join(errors, ", "));
   }
 }
 
