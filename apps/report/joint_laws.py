@@ -174,7 +174,10 @@ class JointLaw:
 
     def whole(self, faces):
         """Remaining fraction of the bond."""
-        return 1 - faces.history["damage of bond"] if self.kinds["bond"] == "linear softening" else 1.0
+        if self.kinds["bond"] == "linear softening":
+            return 1 - faces.history["damage of bond"]
+        opening = self.entry("opening without cohesion", 0) if self.kinds["bond"] == "constant cohesion" else 0
+        return 1 - np.clip((faces.jump[:, 0] - self.closed_gap(faces)) / opening, 0, 1) if opening > 0 else 1.0
 
     def tension(self, faces):
         """Tensile strength, Pa."""

@@ -265,10 +265,16 @@ struct Augmentation {
   Real normal, tangential;
 };
 
+///
+/// A spring s, Pa/m, beside the law (proximal term) stiffens the surroundings of the law:
+///   c_t + s in place of c_t,  c + s in place of c,  mu tan(theta)/(K_t + s) in place of mu tan(theta)/K_t
+/// Otherwise z and y would decrease with slip and opening if s exceeds c.
 template <class Law>
-KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c) {
-  return {1 / (1 / c + law.gap.closure.initial_compliance() + 2 * law.sliding_compliance),
-          1 / (1 / c + law.elastic.initial_compliance())};
+KOKKOS_INLINE_FUNCTION Augmentation augmentation(const Law& law, Real c, Real spring = 0) {
+  const Real elastic = law.elastic.initial_compliance();
+  return {1 / (1 / (c + spring) + law.gap.closure.initial_compliance() +
+               2 * law.sliding_compliance / (1 + spring * elastic)),
+          1 / (1 / c + elastic) + spring};
 }
 
 /// Returns a contact with normal traction lambda_n and plastic tangential jump p. `size` is |p| or its substitute in

@@ -7,13 +7,13 @@
 
 namespace sprekk::laws {
 
-/// Jump, traction, residual, last plastic jump, contact state and augmentation constant of a face. `rounding`: rounding
-/// error of the jump, m.
+/// Jump, traction, residual, last plastic jump, contact state, augmentation constant and proximal stiffness of a face.
+/// `rounding`: rounding error of the jump, m.
 template <int dim>
 struct JointPoint {
   Real w[dim], traction[dim], R[dim], p_old[dim - 1];
   ContactState state;
-  Real constant, rounding;
+  Real constant, spring, rounding;
 };
 
 /// History variables that commit() advances to the end of a step; on the device.
@@ -61,6 +61,8 @@ struct JointPoints {
   KOKKOS_INLINE_FUNCTION Real constant(int f) const {
     return factor.extent(0) > 0 ? factor(f) * augmentation(f) : augmentation(f);
   }
+  /// Stiffness of the proximal term, Pa/m.
+  KOKKOS_INLINE_FUNCTION Real spring(int f) const { return proximal * constant(f); }
   KOKKOS_INLINE_FUNCTION Numbers<Real> history_of(int f) const {
     if (stored_history.extent(1) == 0) return {};
     return {&stored_history(f, 0), static_cast<long>(stored_history.stride(1))};

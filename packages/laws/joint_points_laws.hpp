@@ -42,7 +42,7 @@ KOKKOS_INLINE_FUNCTION void JointPoints<dim>::contact(int f, const T (&w)[dim], 
     const Real compliance = k == 0 ? 0 : law[number(f)].elastic.initial_compliance();
     Real there = 0;
     for (int i = 0; i < dim; ++i) there += frame(f, k, i) * (anchor(f, i) - compliance * anchor(f, dim + i));
-    const T pull = proximal * constant(f) * (w[k] - compliance * traction[k] - there);
+    const T pull = spring(f) * (w[k] - compliance * traction[k] - there);
     jump[k] -= compliance * pull;
     borne[k] -= pull;
   }
@@ -57,7 +57,7 @@ KOKKOS_INLINE_FUNCTION ContactState JointPoints<dim>::evaluate(int f, const T (&
   T jump[dim], borne[dim];
   contact(f, w, traction, jump, borne);
   const auto& joint = law[number(f)];
-  const auto c = laws::augmentation(joint, constant(f));
+  const auto c = laws::augmentation(joint, constant(f), spring(f));
   if (!is_prescribed(f)) return contact_residual<dim>(joint, c, jump, borne, old, R, history(f), duration);
   Real given[dim];
   for (int i = 0; i < dim; ++i) given[i] = prescribed(f, i);

@@ -25,7 +25,7 @@ class BalanceCheck {
   /// `allowed` of the flows in the first iterate, those through constrained unknowns are included. Collective.
   Real imbalance(const fields::Evaluation& x) const;
 
-  static constexpr Real allowed = 1e-7;      ///< imbalance of a solution
+  static constexpr Real allowed = 1e-8;      ///< imbalance of a solution
   static constexpr Real largest_hidden = 1;  ///< imbalance that round-off may hide; larger ones are no solution
 
  private:

@@ -1,6 +1,7 @@
 #include "solve/time_stepping.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/check.hpp"
 #include "base/parameters.hpp"
@@ -8,9 +9,9 @@
 namespace sprekk::solve {
 namespace {
 
-constexpr Real first_stiffness = 10, weak_stiffness = 1e-3, min_stiffness = 1e-9, max_stiffness = 1e4;
-constexpr Real weaker = 0.3, stronger = 10;
-constexpr int max_proximal_solves = 60, min_cuts = 3, max_placements = 4;
+constexpr Real first_stiffness = 10, weak_stiffness = 1e-3, min_stiffness = 1e-9, max_stiffness = 1e8;
+constexpr Real weaker = 0.3, slightly_weaker = 0.9, stronger = 5;
+constexpr int max_proximal_solves = 120, min_cuts = 3, max_placements = 4;
 
 struct Release {
   BlockProblem& problem;
@@ -57,24 +58,32 @@ NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, 
   return solve(x, report);
 }
 
-/// Proximal continuation. Springs pull the sides of fractures to their present position. Newton's method
-/// finds the state, from which new springs start, with a lower stiffness while Newton's method converges. The last
-/// solve is without springs: after a weak spring or, if that fails, after the weakest. Thin layers yield to much
-/// smaller forces.
+/// Proximal continuation. Springs pull the sides of fractures to their present position. Newton's method finds the
+/// state, from which new springs start, with a lower stiffness while Newton's method converges. Unstable motions
+/// advance fastest with springs just above the stiffness at which Newton's method fails. After a failure the last
+/// stiffness that converged is used again, and the stiffness decreases more slowly. The last solve is without springs:
+/// after a weak spring or, if that fails, after the weakest. Thin layers yield to much smaller forces.
 NewtonReport TimeStepper::relax(Evaluation& x, StepReport& report) {
   auto place = x;
   const Release release{problem_, x};  // also if an evaluation throws
-  Real stiffness = first_stiffness, enough = weak_stiffness;
+  Real stiffness = first_stiffness, enough = weak_stiffness, factor = weaker;
+  bool converged = false;  // the last solve
   for (int k = 0; k < max_proximal_solves && stiffness < max_stiffness; ++k) {
     const bool last = stiffness < enough;
     if (!problem_.globalisation().set_proximal_term(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
     if (newton.stopped || (last && (newton.converged || enough == min_stiffness))) return newton;
     (newton.converged ? place : x) = newton.converged ? x : place;
-    if (last)
+    if (last) {
       enough = min_stiffness;
-    else
-      stiffness *= newton.converged ? weaker : stronger;
+    } else if (newton.converged) {
+      stiffness *= factor;
+      factor = std::max(weaker, std::pow(factor, 1.5));
+    } else {
+      stiffness *= converged ? 1 / factor : stronger;
+      factor = std::min(slightly_weaker, std::sqrt(factor));
+    }
+    converged = newton.converged;
   }
   return {};
 }

@@ -99,10 +99,12 @@ def closure(draw, law, stress, kind):
 
 
 def bond(draw, law, stress, slip):
-    """Adds a bond. Fracture energies are 3 to 100 times strength^2 L/E, which the rock releases as it unloads."""
+    """Adds a bond. Fracture energies are 3 to 100 times strength^2 L/E, which the rock releases as it unloads.
+
+    Constant cohesion decreases over an opening of ten times strength L/E: with a sudden loss there may be no equilibrium."""
     cohesion = stress * draw.power(-1.5, 0)
     if draw.chance(0.5):
-        law |= {"bond": "constant cohesion", "cohesion": cohesion}
+        law |= {"bond": "constant cohesion", "cohesion": cohesion, "opening without cohesion": 10 * slip * cohesion / stress}
         return
     strength = cohesion * draw.rng.uniform(0.2, 0.8)
     law |= {"bond": "linear softening", "cohesion": cohesion, "tensile strength": strength,

@@ -215,6 +215,19 @@ class Verdicts(ProgramTest):
         self.assertLessEqual(max(step["newton_iterations"] for step in steps), 6)
         self.assertEqual(sum(step["cuts"] for step in steps), 0)
 
+    def test_unstable_slip_converges(self):
+        """The scenes obey the laws, without bisection. 6: cohesion decreases with the opening. 23: reversed slip of a soft joint
+        with dilation, by proximal continuation, whose projections lacked the springs."""
+        for number in (6, 23):
+            drawn, refusal = random_scenes.write(4711, number, self.folder, program.PROGRAM)
+            self.assertEqual(refusal, "")
+            path = self.folder / f"{drawn.name}.xml"
+            self.call("run", path, "--output", self.folder / drawn.name)
+            results = json.loads((self.folder / drawn.name / "results.json").read_text())
+            self.assertEqual(sum(step["cuts"] for step in results["steps"]), 0, drawn.name)
+            run = contact.Run(self.folder / drawn.name, 0, "", results=results, scene=Scene(drawn.name, str(path)))
+            self.assertEqual(random_run.judge(run, path), ("ok", []))
+
     def test_scenes_that_fail_are_saved(self):
         broken = self.folder / "broken"
         broken.write_text("#!/bin/sh\necho no good; exit 5\n")

@@ -393,7 +393,7 @@ void ElasticPlasticJump<dim>::measure(const assembly::State& state, const assemb
     const laws::Contact<Real> at{
         .lambda_n = point.traction[0], .dim = dim, .history = history(f), .duration = state.dt};
     const bool rated = state.dt > 0 && law.depends_on_rate() && !is_prescribed(f);
-    auto c = laws::augmentation(law, point.constant);
+    auto c = laws::augmentation(law, point.constant, point.spring);
     if (rated) c.tangential = laws::rated_constant(law, at, c.tangential);
     const Real compliance = rated ? law.compliance(at) : 0;
     Real square = 0, slip = 0;

@@ -59,6 +59,7 @@ struct JointFace {
     for (int i = 0; i < dim - 1; ++i) p.p_old[i] = points.p_old(f, i);
     p.state = points.residual(f, p.w, p.traction, p.R);
     p.constant = points.constant(f);
+    p.spring = points.spring(f);
     p.rounding = 64 * std::numeric_limits<Real>::epsilon() * size_of_terms(f, x);
     return p;
   }

@@ -456,7 +456,8 @@ std::vector<std::string> Mechanics::Solvability::doubts(const Setting& setting, 
   if (!is_in(setting.scene)) return {};
   const auto& [scene, mesh, start] = setting;
   std::vector<std::string> all = {friction_doubt(scene, mesh), weakening_doubt(scene, mesh), bond_doubt(scene, mesh)};
-  if (oscillates) all.push_back(dilation_doubt(setting.scene, setting.mesh));
+  if (oscillates)
+    for (const auto& doubt : {cohesion_doubt(scene, mesh), dilation_doubt(scene, mesh)}) all.push_back(doubt);
   all.erase(std::remove(all.begin(), all.end(), ""), all.end());
   return all;
 }

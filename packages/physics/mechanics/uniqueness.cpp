@@ -212,6 +212,21 @@ std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   return "";
 }
 
+std::string cohesion_doubt(const Scene& scene, const mesh::Mesh& mesh) {
+  const Real zero = 0;
+  for (const auto& [material, called] : used_joints(scene, mesh, false)) {
+    if (!material.is_uniform()) continue;
+    const auto cohesion = material.joint({}).law.cohesion(laws::Contact<Real>{.history = {&zero, 0}});
+    if (cohesion.lost && cohesion.shear > 0)
+      return fmt::format(
+          "faces of {} lose their cohesion, {:.2g} Pa, at once when they open; where they are about to open, neither "
+          "the closed nor the open state may be in equilibrium; an \"opening without cohesion\" of bond \"constant "
+          "cohesion\" avoids this",
+          called, cohesion.shear);
+  }
+  return "";
+}
+
 std::string dilation_doubt(const Scene& scene, const mesh::Mesh& mesh) {
   const Real size = mesh::largest_extent(mesh);
   const auto rock = bounding_rock(scene);

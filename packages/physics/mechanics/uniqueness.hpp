@@ -20,6 +20,9 @@ std::string weakening_doubt(const Scene& scene, const mesh::Mesh& mesh);
 /// closure. Slip: c/s_f > G/L without tangential stiffness.
 std::string bond_doubt(const Scene& scene, const mesh::Mesh& mesh);
 
+/// Message about joints whose faces lose a cohesion at once when they open; empty: none. Collective.
+std::string cohesion_doubt(const Scene& scene, const mesh::Mesh& mesh);
+
 /// Message about a joint for which the solution may not be unique when slip reverses, with its dilation angle and the
 /// largest angle without this effect; empty: none. Also empty if properties depend on the position, and for fractures
 /// whose opening is not resisted by rock. In the latter case, e.g. at a free block, the load determines the normal

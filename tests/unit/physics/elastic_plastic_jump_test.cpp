@@ -212,6 +212,24 @@ TEST(ElasticPlasticJump, ProximalTermLeavesTheElasticJumpAlone) {
   }
 }
 
+/// A face with springs much stiffer than the rock slides in the direction of its slip p: R_t = -s p - b with the bound
+/// b = 0.6 * 0.5 of the traction beside the springs. The state open, R = lambda - s (w - w_a), shows s.
+TEST(ElasticPlasticJump, ProximalTermStiffensTheProjection) {
+  for (const auto& cell : all_cells) {
+    ShiftedRock s(cell);
+    auto r = fields::create_like(s.x);
+    const Real closed = 0.01 - 0.1 * 0.5 / (0.5 + 0.5), slip = 3, opens = 0.2 * slip, pulled = 1e9;
+    s.set({closed, 0, 0}, {-0.5, 0, 0});
+    s.rock.system->globalisation().set_proximal_term(1000, s.x);
+    s.set({closed, slip, 0}, {pulled, 0, 0});
+    s.rock.system->raw_residual(s.x, r);
+    const Real per_stress = r[2]->getData()[0] / pulled, open = r[2]->getData()[1] / per_stress;
+    s.set({closed + opens, slip, 0}, {-0.5 - open / slip * opens, 0, 0});
+    s.rock.system->raw_residual(s.x, r);
+    EXPECT_NEAR(r[2]->getData()[1] / per_stress - open, -0.6 * 0.5, 1e-12 * std::abs(open)) << cell;
+  }
+}
+
 TEST(ElasticPlasticJump, IsSymmetricUnlessItSlips) {
   ShiftedRock s("tetrahedron");
   const auto symmetric = [&](std::array<Real, 3> jump, std::array<Real, 3> traction) {

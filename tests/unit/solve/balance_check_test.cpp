@@ -82,8 +82,8 @@ bool closes(const RowsProblem::Rows& last, const std::vector<Measure>& measures 
 
 TEST(BalanceCheck, ComparesTheSumOfEachQuantityWithItsOwnFlows) {
   EXPECT_TRUE(closes({{{5, 0}, {-5, 0}, {0, 0}, {1, 0}}}));     // blocks of one quantity exchange it
-  EXPECT_FALSE(closes({{{5, 0}, {0, 0}, {0, 0}, {0, 0}}}));     // 2e-6 of the heat
-  EXPECT_TRUE(closes({{{0.2, 0}, {0, 0}, {0, 0}, {0, 0}}}));    // 7e-8 of the heat
+  EXPECT_FALSE(closes({{{0.2, 0}, {0, 0}, {0, 0}, {0, 0}}}));   // 7e-8 of the heat
+  EXPECT_TRUE(closes({{{2e-3, 0}, {0, 0}, {0, 0}, {0, 0}}}));   // 7e-10 of the heat
   EXPECT_FALSE(closes({{{0, 0}, {0, 0}, {1e-5, 0}, {0, 0}}}));  // 1e-2 of the tracer, 1e-12 of the heat
   EXPECT_TRUE(closes({{{0, 0}, {0, 0}, {1e-5, -1e-5}, {0, 0}}}));
 }

@@ -210,12 +210,12 @@ TEST(Newton, ReturnsTheIterateWithTheSmallestImbalance) {
     int iterations, returned;
   };
   for (const auto& [imbalances, iterations, returned] :
-       {Case{{1, 1e-8}, 1, 1},                    // the sum closes
-        Case{{1, 1e-3, 1e-8}, 2, 2},              // after an additional iteration
+       {Case{{1, 1e-10}, 1, 1},                   // the sum closes
+        Case{{1, 5e-8, 1e-10}, 2, 2},             // after an additional iteration
         Case{{1, 1e-3, 1e-4, 1e-5, 1e-9}, 3, 3},  // two additional iterations at most
-        Case{{1, 1e-3, 9e-4, 1e-8}, 2, 2},        // the last one must halve the error
-        Case{{1, 1e-3, 2e-3, 1e-8}, 2, 1},        // larger error
-        Case{{1, 1e-3, 1e-4, 5e-4, 1e-8}, 3, 2}}) {
+        Case{{1, 1e-3, 9e-4, 1e-10}, 2, 2},       // the last one must halve the error
+        Case{{1, 1e-3, 2e-3, 1e-10}, 2, 1},       // larger error
+        Case{{1, 1e-3, 1e-4, 5e-4, 1e-10}, 3, 2}}) {
     GivenImbalances problem(Tpetra::getDefaultComm(), imbalances);
     Newton newton(problem, {});
     auto x = problem.constant(0);

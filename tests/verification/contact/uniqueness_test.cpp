@@ -109,6 +109,11 @@ TEST(Uniqueness, IsInTheReasonOfAFailedStep) {
   EXPECT_THAT(reason("contact/block_2d.xml", 1, {"Materials.joint.friction coefficient=2"}), of_friction);
   const std::vector<std::string> dilation = {"Materials.joint.dilation angle=60"};
   EXPECT_THAT(reason("contact/network_x.xml", 3, dilation), testing::AllOf(changes, of_dilation));
+  std::vector<std::string> cohesion = {"Materials.joint.bond=constant cohesion", "Materials.joint.cohesion=1e-9"};
+  const auto of_cohesion = testing::HasSubstr("faces of \"joint\" lose their cohesion, 1e-09 Pa, at once");
+  EXPECT_THAT(reason("contact/network_x.xml", 3, cohesion), testing::AllOf(changes, of_cohesion));
+  cohesion.push_back("Materials.joint.opening without cohesion=1e-3");
+  EXPECT_THAT(reason("contact/network_x.xml", 3, cohesion), testing::Not(of_cohesion));
   EXPECT_THAT(reason("contact/network_x.xml", 1, dilation), testing::Not(testing::AnyOf(changes, of_dilation)));
 }
 
