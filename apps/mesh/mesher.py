@@ -20,7 +20,9 @@ from surface_mesh import SIDES, SurfaceMesh
 
 FAR = 20  # in diagonals of the domain
 POOR = 0.02  # quality of cells that repairs avoid
-PRECISION = 1e-3  # of the number of edges of a line, relative; the default of gmsh, 1e-9, requires more time than the cells
+# Precision of the number of edges of a line, relative: for a grid of sizes, and for fields of points. The default of gmsh,
+# 1e-9, requires more time than the cells.
+PRECISION, PRECISION_OF_FIELDS = 1e-3, 1e-6
 ROUNDS, BISECTIONS = 6, 2  # repeated generations of cells; the first ones only bisect triangles at poor cells
 
 
@@ -297,6 +299,7 @@ def set_sizes(sizes, origin, folder):
     """Defines the size field of gmsh. A file in `folder` contains the grid of sizes of repaired networks."""
     if sizes.grid is None:
         set_fields(sizes, origin)
+        gmsh.option.setNumber("Mesh.LcIntegrationPrecision", PRECISION_OF_FIELDS)
     else:
         path, field = os.path.join(folder, "sizes"), gmsh.model.mesh.field
         sizes.grid.write(path, origin)

@@ -8,6 +8,7 @@
 #include "multigrid/patched_smoother.hpp"
 #include "solve/flow_factors.hpp"
 #include "solve/minimal_residual.hpp"
+#include "solve/reuse.hpp"
 #include "solve/split_interpolation.hpp"
 
 namespace sprekk::solve {
@@ -258,15 +259,35 @@ std::vector<SolverCost> FineLevel::costs() const {
   return all;
 }
 
+/// Sets the interpolation. That of scalars is split again if weak couplings have changed: conductivities may change by
+/// orders of magnitude from iterate to iterate. Returns whether it was split again after the first set-up. Collective.
+bool FineLevel::set_interpolation(const DiagonalBlock& first) {
+  constexpr GlobalIndex few = 10000;
+  const auto& given = first.block.interpolation;
+  if (!is_scalar_ || given.is_null()) {
+    P_ = interpolation_ = given;
+    return false;
+  }
+  const auto& A = *first.matrix->crs();
+  if (interpolation_.is_null()) interpolation_ = given;
+  bool splits = false;
+  if (!in_flow_) {
+    auto weak = weak_couplings(A);
+    splits = differ(*A.getComm(), weak_, weak, few);
+    if (splits) {
+      weak_ = std::move(weak);
+      const auto P = without_prescribed(A, *given), split = split_interpolation(A, P);
+      interpolation_ = split == P ? given : split;
+    }
+  }
+  P_ = without_prescribed(A, *interpolation_);
+  return splits && !product_.is_null();
+}
+
 void FineLevel::set_up_coarse(const LinearSystem& system) {
   const auto& first = system.diagonal.front();
-  if (interpolation_.is_null()) interpolation_ = first.block.interpolation;
-  P_ = interpolation_;
-  if (is_scalar_ && !P_.is_null()) {
-    P_ = without_prescribed(*first.matrix->crs(), *P_);
-    if (product_.is_null() && !in_flow_)
-      if (const auto split = split_interpolation(*first.matrix->crs(), P_); split != P_) interpolation_ = P_ = split;
-  }
+  const bool splits = set_interpolation(first);
+  if (splits) product_ = Teuchos::null;
   const auto P = P_;
   Bulk bulk;
   if (first.bulk)
@@ -282,8 +303,12 @@ void FineLevel::set_up_coarse(const LinearSystem& system) {
   auto block = first.block;
   // unknowns at one point, of both sides and the fracture, would be near each other and far from all others
   if (is_scalar_ && coarse_->has_cycles()) block.coordinates = Teuchos::null;
-  coarse_->setup(
-      alone({.block = block, .matrix = matrix, .bulk = bulk, .symmetric = system.symmetric, .careful = first.careful}));
+  coarse_->setup(alone({.block = block,
+                        .matrix = matrix,
+                        .bulk = bulk,
+                        .symmetric = system.symmetric,
+                        .is_other_graph = splits,
+                        .careful = first.careful}));
 }
 
 void FineLevel::prepare(const LinearSystem& system, SolverCost&) {

@@ -34,12 +34,14 @@ class FineLevel : public Preconditioner {
   bool renew(const LinearSystem& system) override;
   RCP<const fields::Operator> made() const override { return cycle_; }
   void set_up_coarse(const LinearSystem& system);
+  bool set_interpolation(const DiagonalBlock& first);
 
   std::vector<std::string> enriching_;  // names of the enriching blocks
   int degree_;                          // of Chebyshev's polynomial
   bool in_flow_;                        // advected: incomplete factors in the order of the flow
   bool is_scalar_;                      // a single block with one unknown per entity
   std::unique_ptr<Preconditioner> coarse_;
+  std::vector<bool> weak_;              // couplings of scalars when the interpolation was split
   RCP<const CrsMatrix> interpolation_;  // that of the first block, for scalars of split_interpolation(); null: none
   RCP<const CrsMatrix> P_;              // the same with zero rows for prescribed unknowns
   RCP<const Matrix> product_;           // P^T A P

@@ -25,10 +25,12 @@ struct DiagonalBlock {
   Bulk bulk;                 ///< empty: absent
   bool symmetric = true;
   RCP<const Vector> schur = {};  ///< see BlockProblem::schur()
+  bool is_other_graph = false;   ///< the graph differs from that of the last set-up
   bool careful = true;           ///< if not symmetric, a multigrid cycle is tried at set-up and corrected if necessary
 };
 
-/// Linear system of one or several blocks, joined. Graphs must be the same in each set-up.
+/// Linear system of one or several blocks, joined. Graphs must be the same in each set-up,
+/// except those of a DiagonalBlock that declares another graph.
 struct LinearSystem {
   std::shared_ptr<const Joined> joined;
   Blocks blocks;  ///< [r * n + s], not scaled

@@ -196,8 +196,8 @@ class MueLuMultigrid : public Preconditioner {
     const auto& bulk = system.diagonal.front().bulk;
     const bool by_bulk = bulk && system.diagonal.size() == 1;
     // with advection, strong couplings depend on the values: those of an earlier flow are outdated
-    const bool rebuild =
-        hierarchy_.is_null() || (symmetric_ && !system.symmetric) || system.diagonal.front().block.advected;
+    const bool rebuild = hierarchy_.is_null() || system.diagonal.front().is_other_graph ||
+                         (symmetric_ && !system.symmetric) || system.diagonal.front().block.advected;
     if (rebuild) {
       symmetric_ = system.symmetric;
       if (by_bulk)

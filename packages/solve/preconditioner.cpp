@@ -12,6 +12,7 @@
 #include "multigrid/multigrid.hpp"
 #include "solve/condensed_pair.hpp"
 #include "solve/fine_level.hpp"
+#include "solve/reuse.hpp"
 #include "solve/sweep.hpp"
 
 namespace sprekk::solve {
@@ -53,7 +54,7 @@ class NodeMultigrid : public Preconditioner {
   void prepare(const LinearSystem& system, SolverCost& cost) override {
     const auto& first = system.diagonal.front();
     matrix_.update(system);
-    if (multigrid_.is_null() || has_other_couplings(system)) make(system);
+    if (multigrid_.is_null() || first.is_other_graph || has_other_couplings(system)) make(system);
     multigrid_->setup(matrix_.matrix(), first.symmetric, first.careful);
     cost.operator_complexity = multigrid_->operator_complexity();
     cost.bytes = multigrid_->bytes();
@@ -88,14 +89,10 @@ class NodeMultigrid : public Preconditioner {
     constexpr GlobalIndex few = 1000;
     const auto& comm = *system.joined->map()->getComm();
     if (!base::any_rank(comm, [&] { return !weak_.empty(); })) return false;
-    std::array<GlobalIndex, 2> count{};
-    look(system, [&](const auto& A) {
-      const auto weak = multigrid::weak_couplings(A, options_.strong);
-      for (std::size_t k = 0; k < weak.size(); ++k) count[0] += k >= weak_.size() || weak[k] != weak_[k];
-      count[1] = static_cast<GlobalIndex>(weak.size());
-    });
-    const auto all = base::sum_over_ranks(comm, count);
-    return few * all[0] > all[1];
+    bool result = false;
+    look(system,
+         [&](const auto& A) { result = differ(comm, weak_, multigrid::weak_couplings(A, options_.strong), few); });
+    return result;
   }
 
   /// Calls use(matrix) with the matrix that determines the groups of nodes.

@@ -15,7 +15,7 @@ multigrid::Options MultigridOptions::of_nodes() const {
 multigrid::Options MultigridOptions::of_corners(int dim) const {
   auto options = of_nodes();
   options.degree = degree.value_or(dim == 2 ? 8 : 6);
-  options.coarse_size = coarsest.value_or(4000);
+  options.coarse_size = coarsest.value_or(dim == 2 ? 200000 : 4000);
   options.raise = 1e-12;
   options.strong = dim == 2 ? 0.7 : 0;
   return options;
@@ -25,8 +25,10 @@ void MultigridOptions::describe(base::Section& section) {
   section.entry(degree, "degree", "-", base::at_least(1),
                 "degree of the Chebyshev smoother (Adams et al. 2003); higher on the finest level in flat cells; "
                 "absent: 4, for fields on facets 8 in 2D and 6 in 3D");
-  section.entry(coarsest, "coarsest level", "-", base::at_least(1),
-                "number of unknowns up to which a level is solved directly; absent: 300, for fields on facets 4000");
+  section.entry(
+      coarsest, "coarsest level", "-", base::at_least(1),
+      "number of unknowns up to which a level is solved directly; absent: 300, for fields on facets 200000 in "
+      "2D and 4000 in 3D");
   section.hint({"least of a rank"}, "Did you mean \"minimum per rank\"?");
   section.entry(minimum_per_rank, "minimum per rank", "-", base::at_least(1),
                 "minimum mean number of matrix entries per rank; a smaller level moves to fewer ranks");

@@ -2,11 +2,23 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
+#include "base/over_ranks.hpp"
 #include "solve/linear_solver.hpp"
 
 namespace sprekk::solve {
+
+/// Returns whether more than one of `few` flags differs, of those of all ranks; true for vectors of different length.
+/// Collective.
+inline bool differ(const Comm& comm, const std::vector<bool>& before, const std::vector<bool>& now, GlobalIndex few) {
+  std::array<GlobalIndex, 2> count{0, static_cast<GlobalIndex>(now.size())};
+  for (std::size_t k = 0; k < now.size(); ++k) count[0] += k >= before.size() || now[k] != before[k];
+  const auto all = base::sum_over_ranks(comm, count);
+  return few * all[0] > all[1];
+}
 
 /// State of the preconditioner of a Krylov method from system to system, based on the iterations of solves. Calls must
 /// follow the order of events. The state is the same on all ranks. Stored data.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/over_ranks.hpp"
@@ -15,7 +16,7 @@ using fields::Map;
 using fields::MultiVector;
 
 constexpr Real rounding = 1e-12;  // smaller couplings, relative to the diagonals, are zero
-constexpr Real weak = 1e-3;       // largest weak coupling, relative to the diagonals
+constexpr Real weak = 0.1;        // largest weak coupling, relative to the diagonals
 
 /// Returns the values of the owned rows for all columns of A. Collective.
 MultiVector with_ghosts(const CrsMatrix& A, const MultiVector& owned) {
@@ -37,13 +38,14 @@ void for_entries(const CrsMatrix& P, const Visit& visit) {
 
 /// Strong couplings of the owned rows of a square matrix, without the diagonal.
 struct Strong {
-  std::vector<std::size_t> start = {0};
+  std::vector<std::size_t> start;
   std::vector<LocalIndex> column;
-  bool any_weak = false;
 };
 
-/// Collective.
-Strong strong_couplings(const CrsMatrix& A) {
+/// Calls visit(entry, row, column, size relative to the diagonals) for the entries of the owned rows outside of the
+/// diagonal. Collective.
+template <class Visit>
+void for_couplings(const CrsMatrix& A, const Visit& visit) {
   fields::Vector diagonal(A.getRowMap());
   A.getLocalDiagCopy(diagonal);
   const auto everywhere = with_ghosts(A, diagonal);
@@ -51,17 +53,25 @@ Strong strong_couplings(const CrsMatrix& A) {
              of_column = everywhere.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto local = A.getLocalMatrixHost();
   const auto rows = A.getRowMap()->getLocalMap(), columns = A.getColMap()->getLocalMap();
-  Strong strong;
-  for (LocalIndex row = 0; row < local.numRows(); ++row) {
+  for (LocalIndex row = 0; row < local.numRows(); ++row)
     for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
       const LocalIndex column = local.graph.entries(k);
-      const Real size = std::abs(local.values(k)), unit = std::sqrt(std::abs(of_row(row, 0) * of_column(column, 0)));
+      const Real unit = std::sqrt(std::abs(of_row(row, 0) * of_column(column, 0)));
       if (columns.getGlobalElement(column) == rows.getGlobalElement(row)) continue;
-      if (size > weak * unit) strong.column.push_back(column);
-      strong.any_weak = strong.any_weak || (size > rounding * unit && size <= weak * unit);
+      visit(k, row, column, unit > 0 ? std::abs(local.values(k)) / unit : 0);
     }
-    strong.start.push_back(strong.column.size());
-  }
+}
+
+/// Collective.
+Strong strong_couplings(const CrsMatrix& A) {
+  Strong strong;
+  strong.start.assign(base::n_local_elements(*A.getRowMap()) + 1, 0);
+  for_couplings(A, [&](std::size_t, LocalIndex row, LocalIndex column, Real size) {
+    if (size > weak) strong.column.push_back(column);
+    strong.start[row + 1] = strong.column.size();
+  });
+  for (std::size_t row = 1; row < strong.start.size(); ++row)
+    strong.start[row] = std::max(strong.start[row], strong.start[row - 1]);
   return strong;
 }
 
@@ -135,6 +145,7 @@ class Labels {
   void join(const CrsMatrix& A, const CrsMatrix& P, const Strong& strong) {
     label_.assign(column_.size(), none);
     for_entries(P, [&](LocalIndex row, GlobalIndex column, Real) { label_[place(row, column)] = own(row, column); });
+    const auto pairs = joined_places(strong);
     bool changed = true;
     while (base::on_any_rank(*rows_->getComm(), changed)) {
       std::vector<std::vector<GlobalIndex>> owned;
@@ -142,26 +153,30 @@ class Labels {
         owned.emplace_back(label_.begin() + at * width_, label_.begin() + (at + 1) * width_);
       label_ = everywhere(A, owned, width_);
       changed = false;
-      while (join_once(strong)) changed = true;
+      for (bool again = true; again; changed = changed || again) {
+        again = false;
+        for (const auto& [here, there] : pairs)
+          if (label_[there] < label_[here]) {
+            label_[here] = label_[there];
+            again = true;
+          }
+      }
     }
   }
 
-  /// Returns whether a label of an owned row has changed.
-  bool join_once(const Strong& strong) {
-    bool changed = false;
+  /// Returns the places of owned rows with the same column in strongly coupled rows: (place, place in the other row).
+  std::vector<std::pair<int, int>> joined_places(const Strong& strong) const {
+    std::vector<std::pair<int, int>> pairs;
     for (std::size_t row = 0; row < at_.size(); ++row)
       for (std::size_t k = strong.start[row]; k < strong.start[row + 1]; ++k) {
         int here = at_[row] * width_, there = strong.column[k] * width_;
         const int end_here = here + width_, end_there = there + width_;
         while (here < end_here && there < end_there && column_[here] < none) {
-          if (column_[here] == column_[there] && label_[there] < label_[here]) {
-            label_[here] = label_[there];
-            changed = true;
-          }
+          if (column_[here] == column_[there]) pairs.emplace_back(here, there);
           column_[here] < column_[there] ? ++here : ++there;
         }
       }
-    return changed;
+    return pairs;
   }
 
   RCP<const Map> rows_;
@@ -194,9 +209,19 @@ std::vector<GlobalIndex> numbered(const RCP<const Map>& owned, const RCP<const M
 
 }  // namespace
 
+std::vector<bool> weak_couplings(const CrsMatrix& A) {
+  std::vector<bool> is_weak(base::n_local_entries(A), false);
+  for_couplings(A, [&](std::size_t entry, LocalIndex, LocalIndex, Real size) {
+    is_weak[entry] = size > rounding && size <= weak;
+  });
+  return is_weak;
+}
+
 RCP<const CrsMatrix> split_interpolation(const CrsMatrix& A, const RCP<const CrsMatrix>& P) {
+  const auto is_weak = weak_couplings(A);
+  const bool any_weak = std::find(is_weak.begin(), is_weak.end(), true) != is_weak.end();
+  if (!base::on_any_rank(*A.getComm(), any_weak)) return P;
   const auto strong = strong_couplings(A);
-  if (!base::on_any_rank(*A.getComm(), strong.any_weak)) return P;
   const Labels labels(A, *P, strong);
   std::vector<GlobalIndex> columns, others;
   for_entries(*P, [&](LocalIndex row, GlobalIndex column, Real) {
