@@ -33,6 +33,7 @@ PICTURES = {
     "contact/snap_back_2d": "loops",
     "contact/thin_layers_2d": "loops bulk",
     "contact/turns_3d": "loops",
+    "earthquakes/network_3d": "maps bulk",
     "flow": "flow",
     "gmsh": "bulk",
     "growth": "bulk",
@@ -62,6 +63,7 @@ PICTURES = {
 
 # Entries that shorten scenes which need more than LIMIT, as for `sprekk run --set`
 SHORTER = {
+    "earthquakes/network_3d": ("Time.end=7 h", "Mesh file.network.relative size=0.08"),
     "earthquakes/rupture_2d": ("Time.end=6.4 d", "Mesh file.network.relative size=0.01"),
     "earthquakes/thrust_2d": ("Time.end=100 year",),
 }
