@@ -98,7 +98,7 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   in_step_ = true;
   begin_ = begin;
   const auto tips = tips_of(model);
-  turn(*growth, tips);
+  turn(*growth, tips, log);
   if (change_.is_none()) extend(*growth, tips);
   for (const auto& tip : tips)
     if (change_.is_none() && std::isnan(tip.ratio) && may_grow(tip.x)) {
@@ -125,22 +125,23 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
 /// Adds turns of the extensions that disagree with the direction of growth at their tips, by the secant method. The
 /// slope of the angle between both over the turn is -1 for straight cracks under tension, about -3 for wings of a flaw
 /// that slides.
-void Tips::turn(const Growth& growth, const std::vector<Tip>& tips) {
+void Tips::turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log) {
   for (std::size_t k = 0; k < segments_.size(); ++k) {
     auto& one = segments_[k];
     const auto tip = std::min_element(tips.begin(), tips.end(), [&](const Tip& a, const Tip& b) {
       return distance(a.x, one.tip) < distance(b.x, one.tip);
     });
     const bool found = tip != tips.end() && distance(tip->x, one.tip) < 1e-3 * growth.segment;
-    if (one.is_settled || !found || !(tip->ratio > 0) || one.n_turns == max_turns) {
+    if (one.is_settled || !found || !(tip->ratio > 0)) {
       one.is_settled = true;
       continue;
     }
     const Real angle = angle_between(one.begin, one.tip, tip->direction);
-    if (std::abs(angle) <= growth.turn * M_PI / 180) {
-      one.is_settled = true;
-      continue;
-    }
+    one.is_settled = std::abs(angle) <= growth.turn * M_PI / 180 || one.n_turns == max_turns;
+    if (one.is_settled && std::abs(angle) > growth.turn * M_PI / 180)
+      log.warning("the extension to ({:.6g}, {:.6g}) differs by {:.3g} degrees from the direction of growth at its tip",
+                  one.tip[0], one.tip[1], std::abs(angle) * 180 / M_PI);
+    if (one.is_settled) continue;
     const Real slope = one.n_turns == 0 ? -2.5 : std::clamp<Real>((angle - one.angle) / one.turned, -6, -0.7);
     one.angle = angle;
     one.turned = std::clamp(-angle / slope, -largest_turn, largest_turn);

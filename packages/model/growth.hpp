@@ -53,7 +53,7 @@ class Tips {
     bool is_settled = false;
   };
   std::vector<Tip> tips_of(Model& model) const;
-  void turn(const Growth& growth, const std::vector<Tip>& tips);
+  void turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log);
   bool may_grow(const Point& tip) const;
   void extend(const Growth& growth, const std::vector<Tip>& tips);
 

@@ -373,7 +373,7 @@ TEST(Extension, NeedsRoom) {
   Bisection bisection(make_box(box));
   std::vector<GlobalIndex> parent(bisection.n_cells());
   std::iota(parent.begin(), parent.end(), 0);
-  EXPECT_EQ(bisection.extend({{5, 4}, {0, 1}, 3.9, 1}, parent), Extended::none);
+  EXPECT_EQ(bisection.extend({{5, 4}, {0, 1}, 3.4, 0.6}, parent), Extended::none);
   EXPECT_EQ(bisection.extend({{5, 4}, {0.3, std::sqrt(0.91)}, 1.8, 0.3}, parent), Extended::none);
   const auto sizes = sizes_of(bisection.mesh());
   EXPECT_NEAR(sizes.at("minus crack")[0], 2, 1e-12);
