@@ -1,6 +1,7 @@
 #include "physics/heat/overshoot.hpp"
 
 #include "base/over_ranks.hpp"
+#include "base/sample.hpp"
 #include "mesh/facets.hpp"
 
 #include <algorithm>
@@ -80,14 +81,6 @@ Range given_range(const std::vector<GivenTemperature>& all, const mesh::Mesh& me
   return range;
 }
 
-/// At most max_times of the times at equal intervals, including the last one.
-std::vector<Real> some_of(const std::vector<Real>& times) {
-  const std::size_t every = (times.size() + max_times - 1) / max_times;
-  std::vector<Real> some;
-  for (std::size_t k = 0; k < times.size(); k += every) some.push_back(times[times.size() - 1 - k]);
-  return some;
-}
-
 struct Overshoot {
   Real size, low, high;  // K; low and high of the given temperatures
   bool counts() const { return size > tolerance * (high - low) && size > 1e-9 * high; }
@@ -113,7 +106,8 @@ std::string overshoot_warning(const Setting& setting, const std::vector<Real>& t
     if (output.name == "temperature" || output.name == "fracture temperature")
       for (const Real T : output.values) found.add(T);
   auto beyond = overshoot(mesh, other, given_range(given, mesh, {times.back()}), found);
-  if (beyond.counts()) beyond = overshoot(mesh, other, given_range(given, mesh, some_of(times)), found);
+  if (beyond.counts())
+    beyond = overshoot(mesh, other, given_range(given, mesh, base::sample_of(times, max_times)), found);
   if (!beyond.counts()) return "";
   const Real size = std::pow(10, std::floor(std::log10(beyond.size)));  // few different messages
   return fmt::format(

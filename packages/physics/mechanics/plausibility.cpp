@@ -23,14 +23,6 @@ namespace sprekk::physics {
 using mesh::norm;
 using mesh::operator-;
 
-std::vector<Real> some_of(const std::vector<Real>& times) {
-  constexpr std::size_t maximum = 12;
-  std::vector<Real> some;
-  const std::size_t n = times.size(), stride = (n + maximum - 1) / maximum;
-  for (std::size_t k = (n - 1) % stride; k < n; k += stride) some.push_back(times[k]);
-  return some;
-}
-
 namespace {
 
 using mesh::Extreme;
@@ -434,7 +426,7 @@ std::vector<std::string> in_situ_doubts(const Setting& setting, const Starts& st
 
 std::vector<std::string> Mechanics::Warnings::of_input(const Setting& setting, const std::vector<Real>& times) {
   if (!is_in(setting.scene)) return {};
-  const auto some = some_of(times);
+  const auto some = base::sample_of(times, most_times);
   std::vector<std::string> all = {strain_doubt(setting, some), load_doubt(setting, some),
                                   confining_doubt(setting, some), tension_doubt(setting), in_situ_doubt(setting)};
   const auto add = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };

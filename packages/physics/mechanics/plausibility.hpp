@@ -2,9 +2,7 @@
 #pragma once
 
 #include "base/check.hpp"
-#include "base/types.hpp"
-
-#include <vector>
+#include "base/sample.hpp"
 
 namespace sprekk::physics {
 
@@ -17,7 +15,6 @@ void looking(const Look& look) {
   }
 }
 
-/// At most twelve of the times, including the last one.
-std::vector<Real> some_of(const std::vector<Real>& times);
+constexpr std::size_t most_times = 12;  ///< at which expressions of t are evaluated, see base::sample_of()
 
 }  // namespace sprekk::physics

@@ -96,7 +96,8 @@ std::vector<std::string> hydraulic_opening_doubts(const Setting& setting, const 
     looking([&] {
       for (const auto& [x, cell] : places) {
         const Real compression = smallest_compression(initial.of_cell(mesh, cell), x, mesh.dim());
-        for (const Real t : pressure.constant_in_time() ? std::vector{times.front()} : some_of(times)) {
+        for (const Real t :
+             pressure.constant_in_time() ? std::vector{times.front()} : base::sample_of(times, most_times)) {
           const Real p = pressure(x, t);
           if (compression <= 0 || p - compression <= excess) continue;
           excess = p - compression;
