@@ -265,8 +265,7 @@ struct Augmentation {
   Real normal, tangential;
 };
 
-///
-/// A spring s, Pa/m, beside the law (proximal term) stiffens the surroundings of the law:
+/// A spring s, Pa/m, parallel to the law (proximal term) stiffens the surroundings of the law:
 ///   c_t + s in place of c_t,  c + s in place of c,  mu tan(theta)/(K_t + s) in place of mu tan(theta)/K_t
 /// Otherwise z and y would decrease with slip and opening if s exceeds c.
 template <class Law>

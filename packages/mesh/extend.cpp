@@ -254,6 +254,7 @@ Extended Bisection::extend(const Extension& wanted, std::vector<GlobalIndex>& pa
   {
     const Patch patch(*this);
     const GlobalIndex tip = patch.tip_at(e.tip, 1e-6 * e.length);
+    if (tip < 0 && patch.is_at_obstacle(e.tip, 1e-6 * e.length)) return Extended::junction;  // joined by another
     SPREKK_CHECK(tip >= 0, "extension: there is no tip at ({}, {})", e.tip[0], e.tip[1]);
     const int single = patch.end_at(tip).label.single;
     const Point end = e.tip + e.length * e.direction;

@@ -41,7 +41,8 @@ void Growth::describe(base::Section& s) {
           "largest angle between an extension and the direction of growth at its new tip; extensions are turned until "
           "it is smaller");
   s.entry(largest, "extensions per step", "-", base::at_least(1),
-          "maximum number of extensions of a tip in a time step; a tip that would grow further causes a warning");
+          "maximum number of rounds of extensions in a time step; in a round, all tips at their toughness grow by a "
+          "segment; a tip that would grow further causes a warning");
 }
 
 std::vector<Tips::Tip> Tips::tips_of(Model& model) const {
@@ -122,6 +123,11 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   return change_;
 }
 
+void Tips::warn_about(const Segment& one, base::Log& log) const {
+  log.warning("the extension to ({:.6g}, {:.6g}) differs by {:.3g} degrees from the direction of growth at its tip",
+              one.tip[0], one.tip[1], std::abs(one.angle) * 180 / M_PI);
+}
+
 /// Adds turns of the extensions that disagree with the direction of growth at their tips, by the secant method. The
 /// slope of the angle between both over the turn is -1 for straight cracks under tension, about -3 for wings of a flaw
 /// that slides.
@@ -138,12 +144,11 @@ void Tips::turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& l
     }
     const Real angle = angle_between(one.begin, one.tip, tip->direction);
     one.is_settled = std::abs(angle) <= growth.turn * M_PI / 180 || one.n_turns == max_turns;
-    if (one.is_settled && std::abs(angle) > growth.turn * M_PI / 180)
-      log.warning("the extension to ({:.6g}, {:.6g}) differs by {:.3g} degrees from the direction of growth at its tip",
-                  one.tip[0], one.tip[1], std::abs(angle) * 180 / M_PI);
-    if (one.is_settled) continue;
-    const Real slope = one.n_turns == 0 ? -2.5 : std::clamp<Real>((angle - one.angle) / one.turned, -6, -0.7);
+    const Real change = angle - one.angle;
     one.angle = angle;
+    if (one.is_settled && std::abs(angle) > growth.turn * M_PI / 180) warn_about(one, log);
+    if (one.is_settled) continue;
+    const Real slope = one.n_turns == 0 ? -2.5 : std::clamp<Real>(change / one.turned, -6, -0.7);
     one.turned = std::clamp(-angle / slope, -largest_turn, largest_turn);
     ++one.n_turns;
     change_.turns.push_back({one.begin, one.tip, one.turned});
@@ -186,6 +191,7 @@ void Tips::note(const std::vector<int>& made, base::Log& log) {
     auto& one = segments_[s];
     if (!made[k++]) {
       one.is_settled = true;
+      warn_about(one, log);
       continue;
     }
     const Real c = std::cos(one.turned), s_ = std::sin(one.turned), x = one.tip[0] - one.begin[0],

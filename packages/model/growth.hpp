@@ -21,7 +21,7 @@ struct Growth {
   Real segment = 0;  ///< length of an extension, m
   int faces = 4;     ///< of an extension
   Real turn = 2;     ///< largest remaining angle between the last extension and the direction of growth, degree
-  int largest = 20;  ///< extensions of a tip in a step
+  int largest = 20;  ///< number of rounds of extensions in a step
   void describe(base::Section& section);
 };
 
@@ -48,12 +48,13 @@ class Tips {
   };
   struct Segment {
     Point begin, tip;
-    Real angle = 0, turned = 0;  ///< to the direction of growth before the last turn; last turn, rad
+    Real angle = 0, turned = 0;  ///< to the direction of growth when last computed; last turn, rad
     int n_turns = 0;
     bool is_settled = false;
   };
   std::vector<Tip> tips_of(Model& model) const;
   void turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log);
+  void warn_about(const Segment& one, base::Log& log) const;
   bool may_grow(const Point& tip) const;
   void extend(const Growth& growth, const std::vector<Tip>& tips);
 

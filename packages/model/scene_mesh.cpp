@@ -54,10 +54,12 @@ int Scene::order() const { return mesh_file ? mesh_file->order.value_or(1) : mes
 
 mesh::Bisection Scene::bisected() const {
   const auto coarse = read_mesh();
-  SPREKK_CHECK(mesh::is_simplex(coarse.shape), "Sprekk > {}, must be {} with \"Accuracy\" or \"Growth\"",
+  const bool is_2d = growth || mesh::dimension(coarse.shape) == 2;
+  SPREKK_CHECK(mesh::is_simplex(coarse.shape) && is_2d == (mesh::dimension(coarse.shape) == 2),
+               "Sprekk > {}, must be {} with \"{}\"",
                mesh_file ? fmt::format("Mesh file > \"path\": {} has other cells", mesh_file->path)
                          : fmt::format("Mesh > \"cell\": is {}", mesh.cell),
-               mesh::dimension(coarse.shape) == 2 ? "triangle" : "tetrahedron");
+               is_2d ? "triangle" : "tetrahedron", growth ? "Growth" : "Accuracy");
   return mesh::Bisection(coarse);
 }
 

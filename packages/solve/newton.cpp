@@ -58,7 +58,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
       if (!needs_another_iteration(group)) status_ = NOX::StatusTest::Converged;
     } else if (!accepted_.empty()) {
       fail("an additional iteration has larger errors");
-    } else if (is_hidden && report_.iterations >= options_.max_iterations) {
+    } else if (is_hidden && report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("the sum of a balance exceeds its flows after {} iterations", report_.iterations));
     } else if (!std::isfinite(value)) {
       fail(fmt::format("'{}' is {}", worst->name, value));

@@ -11,7 +11,7 @@
 
 namespace sprekk::solve {
 
-/// Returns whether more than one of `few` flags differs, of those of all ranks; true for vectors of different length.
+/// Returns whether more than one of `few` flags differs, of those of all ranks; additional flags differ.
 /// Collective.
 inline bool differ(const Comm& comm, const std::vector<bool>& before, const std::vector<bool>& now, GlobalIndex few) {
   std::array<GlobalIndex, 2> count{0, static_cast<GlobalIndex>(now.size())};

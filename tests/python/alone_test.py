@@ -301,6 +301,12 @@ class Wrong(unittest.TestCase):
             model.run()
         self.assertEqual(model.time, 0)
 
+    def test_growth_is_refused(self):
+        model = sprekk.Model(sprekk.Scene(ROOT / "xml/growth/wing_cracks_2d.xml"))
+        with self.assertRaisesRegex(sprekk.Error, "Growth: a Model has one mesh.*use `./sprekk run`"):
+            model.run()
+        self.assertEqual(model.time, 0)
+
 
 def opening(model):
     """Returns the values measured in a sweep."""

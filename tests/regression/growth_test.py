@@ -123,11 +123,23 @@ class Growth(ProgramTest):
         self.assertAlmostEqual(crack["area_open"], crack["area"], delta=1e-9)
         self.assertGreater(other["max_opening"], 0.1 * crack["max_opening"])
 
+    def test_tips_that_meet(self):
+        """Two tips that grow towards each other join to one fracture; both begin at the same load."""
+        other = ["Mesh.fractures.other.lower corner={0.7, 0}", "Mesh.fractures.other.upper corner={1.8, 0}", "Fractures.other.material=joint"]
+        toughness = [f"Fractures.{one}.toughness=5e5" for one in ("crack", "other")]
+        step, = self.run_scene("growth/edge_crack_2d.xml", "Output.vtu=false", "Growth.segment=0.08", "Time.steps=1", *toughness, *other)["steps"]
+        areas = [step["fractures"][one]["area"] for one in ("crack", "other")]
+        self.assertAlmostEqual(sum(areas), max(1.8, *step["stress_intensity"]["x"], 0), delta=0.1)
+
     def test_refused_scenes(self):
         for entries, text in ((["Mesh.cell=quadrilateral"], "must be triangle"), (["Mesh.refinements=1"], "must be 0"),
                               (["Output.events.rate=1"], "must be absent"), (["Growth.faces=1"], "must be at least 2")):
             sets = [word for one in entries for word in ("--set", one)]
             self.assertIn(text, self.call("check", self.scene(WINGS), *sets, expect=1)[1])
+        for scene, entry, text in (("growth/edge_crack_2d.xml", "plastic jump={0.1}", "plastic jump\": not available with a \"toughness"),
+                                   ("verification/penny.xml", "toughness=1e6", "toughness\": requires a mesh in 2D")):
+            errors = self.call("check", self.scene(scene), "--set", "Growth.segment=0.1", "--set", "Fractures.crack.toughness=1e6", "--set", f"Fractures.crack.{entry}", expect=1)[1]
+            self.assertIn(text, errors)
         errors = self.call("check", self.scene("growth/edge_crack_2d.xml"), "--set", "Growth.segment=0.1", expect=1)[1]
         self.assertIn("Fractures: none has a \"toughness\"", errors)
 

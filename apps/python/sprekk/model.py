@@ -86,10 +86,11 @@ class Model:
         output    folder for results.json and field files, as written by `./sprekk run`
 
         Returns a pandas.DataFrame with a row for each step: time, dt, iterations and bisections. Raises NotConverged. A
-        scene with the section Accuracy raises an Error, since it requires several meshes and `./sprekk run`."""
-        if "Accuracy" in self.scene.entries:
-            raise _sprekk.Error(f'{self.scene.name}: Sprekk > Accuracy: a Model has one mesh, so run() cannot reach a '
-                                'target error; use `./sprekk run`, or remove the section to run on this mesh')
+        scene with the section Accuracy or Growth raises an Error: it requires several meshes and `./sprekk run`."""
+        for section, purpose in (("Accuracy", "reach a target error"), ("Growth", "extend fractures")):
+            if section in self.scene.entries:
+                raise _sprekk.Error(f'{self.scene.name}: Sprekk > {section}: a Model has one mesh, so run() cannot '
+                                    f'{purpose}; use `./sprekk run`, or remove the section to run on this mesh')
         steps = _sprekk.Steps(self._handle)
         results = _sprekk.Results(self._handle, os.fspath(output)) if output is not None else None
         rows = []

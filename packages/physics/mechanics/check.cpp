@@ -75,6 +75,13 @@ void compare_fractures(Comparison& c) {
   for (const auto& [name, fracture] : c.scene().fractures) {
     if (fracture.stress_intensity || fracture.toughness)
       compare_stress_intensity(c, fmt::format("Fractures > {} > \"stress intensity\"", name));
+    for (const auto& [entry, given] : {std::pair("prescribed slip", fracture.prescribed_slip.has_value()),
+                                       std::pair("plastic jump", !fracture.plastic_jump.empty()),
+                                       std::pair("unbroken", fracture.unbroken.has_value())})
+      if (given && fracture.toughness)
+        c.fail(fmt::format("Fractures > {} > \"{}\"", name, entry), "not available with a \"toughness\"");
+    if (fracture.toughness && c.names().dim == 3)
+      c.fail(fmt::format("Fractures > {} > \"toughness\"", name), "requires a mesh in 2D");
     if (fracture.prescribed_slip) compare_prescribed_slip(c, name, *fracture.prescribed_slip);
     const std::string jump = fmt::format("Fractures > {} > \"plastic jump\"", name);
     c.check_length(jump, fracture.plastic_jump.size(),

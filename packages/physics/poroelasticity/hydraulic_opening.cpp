@@ -140,7 +140,7 @@ std::vector<std::string> opening_by_rate_doubts(const Setting& setting,
   const auto any = [](const auto& all, const auto& has) { return std::ranges::any_of(all, has); };
   if (initial.empty() || !scene.flow ||
       !any(scene.flow->wells, [](const auto& one) { return one.second.rate.has_value(); }) ||
-      any(scene.fractures, [](const auto& one) { return one.second.unbroken.has_value(); }))
+      any(scene.fractures, [](const auto& one) { return one.second.unbroken || one.second.toughness; }))
     return {};
   bool above = false;
   for (const auto& output : outputs)

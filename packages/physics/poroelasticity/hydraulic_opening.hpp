@@ -14,7 +14,7 @@ namespace sprekk::physics {
 std::vector<std::string> hydraulic_opening_doubts(const Setting& setting, const std::vector<Real>& times);
 
 /// Warns if wells with a given rate raise the pressure in fractures above this compression. Fractures with an
-/// `unbroken` part open by design; scenes with them have no such warning. Collective.
+/// `unbroken` part or a `toughness` open by design; scenes with them have no such warning. Collective.
 std::vector<std::string> opening_by_rate_doubts(const Setting& setting,
                                                 const std::vector<assembly::OutputField>& outputs);
 

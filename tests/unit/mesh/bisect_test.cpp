@@ -406,6 +406,19 @@ TEST(Extension, EndsAtAnotherFracture) {
     }
 }
 
+/// Two tips of one round of growth that meet: the second one has no tip any more.
+TEST(Extension, OfATipThatAnotherHasJoinedIsAJunction) {
+  auto box = with_crack();
+  box.fractures["other"] = fracture({6, 4}, {7, 4});
+  Bisection bisection(make_box(box));
+  std::vector<GlobalIndex> parent(bisection.n_cells());
+  std::iota(parent.begin(), parent.end(), 0);
+  EXPECT_EQ(bisection.extend({{5, 4}, {1, 0}, 1, 0.3}, parent), Extended::junction);
+  EXPECT_EQ(bisection.extend({{6, 4}, {-1, 0}, 1, 0.3}, parent), Extended::junction);
+  expect_conforming(bisection.mesh());
+  EXPECT_EQ(n_tips(bisection.mesh()), 2);
+}
+
 TEST(Bisect, RefusesOtherCells) {
   const auto of = [](BoxMesh box) { return error_of([&] { Bisection{make_box(box)}; }); };
   EXPECT_THAT(of(unit_steps("hexahedron", {2, 2, 2})), HasSubstr("needs triangles or tetrahedra"));
