@@ -97,9 +97,11 @@ struct SlipEvolution {
 /// with the slope g at the middle of this step, the curvature k and h = (dt + dt_1)/2:
 ///   c = k (h dt/4 + dt^2/12) - g^2 dt^2/24
 /// It includes the difference between the logarithm of a mean and the mean of the logarithm. Limits prevent large
-/// extrapolations after abrupt changes. The rate is exact for steady slip, and of third order for step lengths that
-/// vary smoothly. At the start, the initial slip rate replaces V_m,1, r/(1 + r) = 1 and c = 0. theta is integrated
-/// exactly for the slip rate V_m, and corrected for the change of the rate in the step, see Lag.
+/// extrapolations after abrupt changes: g dt is at most D in size. Then d ln V/d ln V_m >= 2/3 for any history, and
+/// V increases with V_m. The rate is exact for steady slip, and of third order for step lengths that vary smoothly. At
+/// the start, the initial slip rate replaces V_m,1, r/(1 + r) = 1 and c = 0. theta is integrated exactly for the slip
+/// rate V_m, and corrected for the change of the rate in the step, see Lag, with e/cosh(d/D)^2: without correction
+/// after an abrupt change at the start of the step.
 ///
 /// Without a duration, the bound is that of the slip rate and state at the end of the last step.
 template <class Evolution>
@@ -195,7 +197,8 @@ struct RateStateFriction {
             damping * initial_rate * std::exp(end.rate) * end.rate_slope) /
            slip;
   }
-  /// Upper bound of the decrease of bound() by slip, divided by the compression, 1/m; at least a/L.
+  /// Upper bound of the decrease of bound() by slip, divided by the compression, 1/m; at least a/L. Only the state
+  /// decreases it, since the rate at the end of a step increases with the slip.
   KOKKOS_INLINE_FUNCTION Real softening(const Contact<Real>& at) const {
     return (direct + evolution * Evolution::steepest(ratio(at))) / distance;
   }
@@ -245,19 +248,23 @@ struct RateStateFriction {
     const Real bend = std::tanh(share * (mean - history[1]) / limit), e = limit * bend, by = share * (1 - bend * bend);
     End end{mean + e, 1 + by};
     if (!(dt_1 > 0)) return end;
-    const Lag lag = Evolution::lag(e, m, r);
+    const Real b = bend * bend;
+    const Lag lag = Evolution::lag(e * (1 - b), m, r);  // none after an abrupt change
     end.state = lag.change;
-    end.state_slope = lag.by_rate * by + lag.by_slip;
+    end.state_slope = lag.by_rate * by * (1 - 3 * b) + lag.by_slip;
     if (dt_2 > 0) add_third_order(mean, dt, history, e, by, end);
     return end;
   }
-  /// Adds c e^2/(e^2 + c^2); `by` is the derivative of e.
+  /// Adds c e^2/(e^2 + c^2). `by` is the derivative of e. That of c is between -D/6 and (5 + D)/3, and its factor
+  /// between -1/8 and 1: the derivative of the term is at least -0.65 by - 1/3.
   KOKKOS_INLINE_FUNCTION static void add_third_order(Real mean, Real dt, const History& history, Real e, Real by,
                                                      End& end) {
     const Real h = (dt + history[2]) / 2, h_1 = (history[2] + history[5]) / 2, s = (mean - history[1]) / h,
-               by_k = 2 / (h * (h + h_1)), k = 2 * (s - (history[1] - history[4]) / h_1) / (h + h_1), g = s + k * h / 2,
-               by_g = 1 / h + by_k * h / 2, weight = h * dt / 4 + dt * dt / 12, c = k * weight - g * g * dt * dt / 24,
-               by_c = by_k * weight - g * by_g * dt * dt / 12;
+               by_k = 2 / (h * (h + h_1)), k = 2 * (s - (history[1] - history[4]) / h_1) / (h + h_1),
+               growth = (s + k * h / 2) * dt, size = std::fmin(std::abs(growth), limit),
+               by_size = size < limit ? std::copysign((1 / h + by_k * h / 2) * dt, growth) : 0,
+               weight = h * dt / 4 + dt * dt / 12, c = k * weight - size * size / 24,
+               by_c = by_k * weight - size * by_size / 12;
     const Real q = e * e + c * c;
     if (!(q > 0)) return;
     const Real of_e = e * e / q, of_c = c * c / q;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace sprekk::laws::testing {
 namespace {
@@ -137,6 +138,40 @@ TEST(RateState, HasTheDerivativeInTheSlip) {
   ageing.damping = 4.41e6;
   expect_hardening(ageing);
   expect_hardening(typical_law<SlipEvolution>());
+}
+
+/// b(S) + N softening S increases over a scan of slips, so that the projected slip is the only root.
+template <class Law>
+void expect_one_root(const Law& law, Real duration, const Real (&history)[6], Real jump) {
+  Real before = 0;
+  for (Real x = -12; x < 12; x += 0.1) {
+    const auto at = slipped(law.initial_rate * duration * std::exp(history[1] + jump + x), duration, history);
+    const Real left = law.bound(at) + N * law.softening(at) * at.slip_of_step;
+    ASSERT_GT(law.hardening(at), -N * law.softening(at)) << x;
+    ASSERT_GT(left, before) << x;
+    before = left;
+  }
+}
+
+/// Step lengths and rates that change abruptly; the first history turns from slowing to accelerating.
+template <class Evolution>
+void expect_one_root_for_any_history() {
+  auto law = typical_law<Evolution>();
+  law.distance = 0.01;
+  expect_one_root(law, 1, {0, -4.9, 1 / 1.93, -4.9, 0, 1 / (1.93 * 0.54)}, 2.4);
+  std::mt19937 random(1);
+  const auto within = [&](Real size) { return std::uniform_real_distribution<Real>(-size, size)(random); };
+  for (int k = 0; k < 3000; ++k) {
+    const Real duration = std::exp(within(12)), last = duration * std::exp(within(4)), mean = within(10),
+               history[6] = {within(10), mean, last, mean, mean + within(k % 20), last * std::exp(within(4))};
+    law.damping = k % 2 * 4.41e6;
+    ASSERT_NO_FATAL_FAILURE(expect_one_root(law, duration, history, 0)) << k;
+  }
+}
+
+TEST(RateState, ProjectedSlipIsTheOnlyRootForAnyHistory) {
+  expect_one_root_for_any_history<Ageing>();
+  expect_one_root_for_any_history<SlipEvolution>();
 }
 
 /// The projection constant is of the size of the softening, and the residual vanishes for the traction of the law.
