@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Energy balances of runs: energy_test.py PROGRAM ROOT MPIEXEC"""
 import csv
+import math
 
+import growth_test
 from program import ProgramTest, main
 
 ENERGY = ["Output.energy=true", "Output.vtu=false"]
@@ -95,6 +97,24 @@ class Energy(ProgramTest):
         self.expect(-work["traction"], last["fracture_energy"] + last["friction_energy"] + stored, 0.01)
         wells = sum(step["wells"]["injector"]["pressure"] * step["wells"]["injector"]["rate"] * dt for step, dt in intervals(steps))
         self.expect(balance["wells"], wells, 1e-3)
+
+    def test_growth(self):
+        """Forces of loads s times displacements, 2 elastic/s, are the work of the loads. Between the loads s0 and s1, growth
+        of the half crack between rollers at 0 and W = 2 from a to b releases s0 s1 (c(b) - c(a))/2, with the compliance
+        c = -(4 W^2/(pi E')) ln cos(pi a/2W)."""
+        for ranks, sets in ((1, []), (2, ["Time.schedule={1.4, 1.7}"])):
+            steps, energy = self.energies("growth/edge_crack_2d.xml", *growth_test.Growth.STRAIGHT, *sets, ranks=ranks)
+            loads = released = s0 = u0 = c0 = 0
+            for step in steps:
+                (x, _, _), = growth_test.tips(step)
+                s1, c1 = 0.5e6 * step["time"], -32 / (math.pi * 32e9) * math.log(math.cos(math.pi * x / 4))
+                u1 = 2 * step["energy"]["elastic"] / s1
+                loads += (s0 + s1) / 2 * (u1 - u0)
+                released += s0 * s1 * (c1 - c0) / 2
+                s0, u0, c0 = s1, u1, c1
+            self.expect(energy["work"]["loads"], loads, 1e-6)
+            self.expect(energy["released"], released, 0.03)
+            self.assertLess(abs(energy["unassigned"]), 1e-6 * loads)
 
 
 def intervals(steps):
