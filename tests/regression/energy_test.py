@@ -116,6 +116,10 @@ class Energy(ProgramTest):
             self.expect(energy["released"], released, 0.03)
             self.assertLess(abs(energy["unassigned"]), 1e-6 * loads)
 
+    def test_refused_scheme(self):
+        errors = self.call("check", self.scene("growth/injection_2d.xml"), "--set", "Output.energy=true", "--set", "Time.scheme=BDF2", expect=1)[1]
+        self.assertIn('is "BDF2": Output > "energy" requires implicit Euler', errors)
+
 
 def intervals(steps):
     """Yields each step with its length."""
