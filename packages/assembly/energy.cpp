@@ -55,7 +55,7 @@ Energy::Energy(const Structure& structure, Residual residual) : structure_(struc
     moving.insert(one.field.name);
   }
   if (motion_.empty()) return;
-  parts_ = {{{"energy", "elastic"}, motion_}};
+  parts_ = {{{"energy", "elastic"}, motion_}, {{"energy", "released"}, {}}};
   for (int b = 0; b < structure.n_blocks(); ++b) {
     const auto& name = unknowns[b].field.name;
     const auto acts = [&](const Coupling& coupling) {
@@ -72,7 +72,7 @@ Energy::Energy(const Structure& structure, Residual residual) : structure_(struc
 }
 
 /// Computes the forces of all parts at x. A part is twice the difference between all forces at x and those with half of
-/// its fields; the loads are the rest.
+/// its fields; the loads are the rest. Nothing holds new faces.
 void Energy::set_forces(const BlockVector& x) {
   const auto moving = [&](const BlockVector& all) {
     BlockVector some;
@@ -95,24 +95,40 @@ void Energy::set_forces(const BlockVector& x) {
     combine(part.force, 2, moving(r), -2);
     combine(rest, 1, part.force, -1);
   }
+  parts_[1].force = fields::create_like(total_);
   parts_.back().force = rest;
   x_ = copy_of(moving(x));
+}
+
+/// Returns this rank's elastic energy.
+Real Energy::elastic() const {
+  Real sum = 0;
+  for (std::size_t k = 0; k < motion_.size(); ++k) sum += product(*x_[k], *parts_[0].force[k]) / 2;
+  return sum;
 }
 
 void Energy::start(const BlockVector& x, Sums sums) {
   sums_ = std::move(sums);
   if (motion_.empty()) return;
   set_forces(x);
-  auto& loads = parts_.back().force;
-  for (std::size_t k = 0; k < motion_.size(); ++k) {  // balanced forces, except of supports
-    const auto free = view_of(*loads[k]);
-    const auto all = const_view_of(*total_[k]);
+  auto held = copy_of(total_);  // forces that are not balanced, except by supports
+  for (std::size_t k = 0; k < motion_.size(); ++k) {
+    const auto forces = view_of(*held[k]);
     const auto mask = structure_.constraints[motion_[k]].mask();
     Kokkos::parallel_for(
-        "balanced loads", Kokkos::RangePolicy<Execution>(0, free.extent(0)), KOKKOS_LAMBDA(int i) {
-          if (!mask(i)) free(i) -= all(i);
+        "held forces", Kokkos::RangePolicy<Execution>(0, forces.extent(0)), KOKKOS_LAMBDA(int i) {
+          if (mask(i)) forces(i) = 0;
         });
   }
+  if (sums_.empty()) {
+    combine(parts_.back().force, 1, held, -1);
+    return;
+  }
+  auto& before = sums_[parts_[0].path];
+  const Real now = base::sum_over_ranks(structure_.comm(), elastic());
+  sums_[parts_[1].path] += before - now;
+  before = now;
+  parts_[1].force = held;
 }
 
 Real Energy::work(const BlockVector& old, const BlockVector& now, const BlockVector& dx, bool prescribed_only) const {
@@ -140,9 +156,7 @@ void Energy::commit(const BlockVector& x, Real dt, const State& state) {
     for (std::size_t k = 1; k < parts_.size(); ++k)
       here[parts_[k].path] = -work(parts[k].force, parts_[k].force, dx, false);
     here[{"energy", "work", "supports"}] = work(total, total_, dx, true);
-    Real elastic = 0;
-    for (std::size_t k = 0; k < motion_.size(); ++k) elastic += product(*x_[k], *parts_[0].force[k]) / 2;
-    here[parts_[0].path] = elastic;
+    here[parts_[0].path] = elastic();
   }
   add_balances(x, dt, state, here);
   std::vector<Real> values;
@@ -154,8 +168,12 @@ void Energy::commit(const BlockVector& x, Real dt, const State& state) {
     sum = *value++;
     if (path[1] == "work") given += sum;
   }
-  const std::vector<std::string> elastic = {"energy", "elastic"};
-  if (!motion_.empty()) sums_[{"energy", "unassigned"}] += here[elastic] - sums_[elastic] - given;
+  if (motion_.empty()) {
+    for (const auto& [path, sum] : here) sums_[path] += sum;
+    return;
+  }
+  const auto &elastic = parts_[0].path, &released = parts_[1].path;
+  sums_[{"energy", "unassigned"}] += here[elastic] - sums_[elastic] - given + here[released];
   for (const auto& [path, sum] : here) sums_[path] = path == elastic ? sum : sums_[path] + sum;
 }
 

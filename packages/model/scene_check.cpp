@@ -156,7 +156,10 @@ Comparison compared(const Draft& draft, MeshNames names) {
       if (!physics::has(*names.boundaries, wall)) names.boundaries->push_back(wall);
   Comparison comparison(draft.value, draft.report, names, tied_boundaries(draft.value), end_of_first_step(draft));
   comparison.compare();
-  compare_scheme(comparison, draft.value.time.scheme);
+  const auto& scheme = draft.value.time.scheme;
+  compare_scheme(comparison, scheme);
+  if (draft.value.output.energy && scheme != "implicit Euler")
+    comparison.fail("Time > \"scheme\"", fmt::format("is \"{}\": Output > \"energy\" requires implicit Euler", scheme));
   if (draft.value.output.error_estimate) compare_error_estimate(comparison, "Output > \"error estimate\"", draft.value);
   if (draft.value.output.events) compare_events(comparison, draft.value);
   if (draft.value.accuracy && is_sound(draft, "Accuracy")) compare_accuracy(comparison, draft.value);

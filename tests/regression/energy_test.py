@@ -1,5 +1,9 @@
 #!/usr/bin/env python3
 """Energy balances of runs: energy_test.py PROGRAM ROOT MPIEXEC"""
+import csv
+import math
+
+import growth_test
 from program import ProgramTest, main
 
 ENERGY = ["Output.energy=true", "Output.vtu=false"]
@@ -78,15 +82,43 @@ class Energy(ProgramTest):
 
     def test_injection(self):
         """Pressure times injected volume is the work of the wells, and except for dissipation and compression that on the
-        rock: elastic energy, fracture energy, and work against the compression of the rock."""
-        steps, energy = self.energies("growth/injection_2d.xml")
-        last = steps[-1]["fractures"]["growing"]
-        rock = energy["work"]["face pressure"]
-        balance = energy["balance"]
+        rock: elastic energy, work against the compression of the rock, and work on the fracture. Fracture energy and
+        friction dissipate the latter, t . jump/2 is stored in the bonds. Short first steps resolve the opening of the notch."""
+        schedule = [1e-3 * 3**k for k in range(7)] + [1.5 * k for k in range(1, 41)]
+        bonds = ["Probes.bonds.line={1.1, 0, 11.9, 0}", "Probes.bonds.points=55", "Probes.bonds.outputs={plastic jump local, traction local}"]
+        steps, energy = self.energies("growth/injection_2d.xml", f"Time.schedule={{{', '.join(map(str, schedule))}}}", *bonds)
+        last, work, balance = steps[-1]["fractures"]["growing"], energy["work"], energy["balance"]
         self.assertLess(abs(sum(balance.values())), 1e-6 * balance["wells"])
-        self.expect(energy["elastic"] + last["fracture_energy"] - energy["work"]["loads"], rock, 0.002)
+        self.assertLess(abs(energy["elastic"] - sum(work.values())), 1e-9 * work["face pressure"])
+        rows = [row for row in csv.reader((self.folder / "out/probes/bonds.csv").open()) if row[0] == "60"]
+        self.assertEqual(len(rows), 55)
+        stored = sum(0.2 * float(row[4 + k]) * float(row[6 + k]) / 2 for row in rows for k in (0, 1))
+        self.assertGreater(stored, 0)
+        self.expect(-work["traction"], last["fracture_energy"] + last["friction_energy"] + stored, 0.01)
         wells = sum(step["wells"]["injector"]["pressure"] * step["wells"]["injector"]["rate"] * dt for step, dt in intervals(steps))
         self.expect(balance["wells"], wells, 1e-3)
+
+    def test_growth(self):
+        """Forces of loads s times displacements, 2 elastic/s, are the work of the loads. Between the loads s0 and s1, growth
+        of the half crack between rollers at 0 and W = 2 from a to b releases s0 s1 (c(b) - c(a))/2, with the compliance
+        c = -(4 W^2/(pi E')) ln cos(pi a/2W)."""
+        for ranks, sets in ((1, []), (2, ["Time.schedule={1.4, 1.7}"])):
+            steps, energy = self.energies("growth/edge_crack_2d.xml", *growth_test.Growth.STRAIGHT, *sets, ranks=ranks)
+            loads = released = s0 = u0 = c0 = 0
+            for step in steps:
+                (x, _, _), = growth_test.tips(step)
+                s1, c1 = 0.5e6 * step["time"], -32 / (math.pi * 32e9) * math.log(math.cos(math.pi * x / 4))
+                u1 = 2 * step["energy"]["elastic"] / s1
+                loads += (s0 + s1) / 2 * (u1 - u0)
+                released += s0 * s1 * (c1 - c0) / 2
+                s0, u0, c0 = s1, u1, c1
+            self.expect(energy["work"]["loads"], loads, 1e-6)
+            self.expect(energy["released"], released, 0.03)
+            self.assertLess(abs(energy["unassigned"]), 1e-6 * loads)
+
+    def test_refused_scheme(self):
+        errors = self.call("check", self.scene("growth/injection_2d.xml"), "--set", "Output.energy=true", "--set", "Time.scheme=BDF2", expect=1)[1]
+        self.assertIn('is "BDF2": Output > "energy" requires implicit Euler', errors)
 
 
 def intervals(steps):
