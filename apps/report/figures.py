@@ -169,9 +169,11 @@ def of_energy(step, dim):
     rows = [
         ("work of loads and of the initial stress", work.get("loads")),
         ("work of prescribed displacements", work.get("supports")),
+        ("work of temperatures, from 0 K", work.get("temperature")),
         ("work of the fluid on the rock", on_rock if "face pressure" in work or "pressure" in work else None),
         ("elastic energy of the rock", energy.get("elastic")),
         ("work on fractures", -work["traction"] if "traction" in work else None),
+        ("released by extension or excavation", energy.get("released")),
     ]
     for key, title in (("friction_energy", "dissipated by slip"), ("fracture_energy", "fracture energy of bonds")):
         values = [one[key] for one in fractures if key in one]

@@ -79,6 +79,8 @@ class JointLaw:
             rides = np.maximum(1 - load / self.entry("transition stress", None), 0) ** self.entry("transition exponent", 1.5)
             slope = rides * asperity * dilation
             return load * ((basic + slope) / (1 - basic * slope) + (1 - rides) * self.number("asperity friction coefficient") * friction)
+        if kind not in ("Barton-Choubey", "mobilised Barton-Choubey"):
+            raise ValueError(f'friction "{kind}" is not known here')
         residual, maximum = self.entry("residual friction angle", None), self.entry("largest friction angle", 70)
         roughness, strength = self.roughness
         rough = roughness * np.log10(strength / np.clip(load, 1e-300, strength))
@@ -86,9 +88,7 @@ class JointLaw:
         if kind == "mobilised Barton-Choubey":
             x = faces.history["accumulated slip"] / self.peak_slip
             return load * np.tan(np.radians(residual * rounded(RESIDUAL, x) + rough * rounded(ROUGHNESS, x)))
-        if kind == "Barton-Choubey":
-            return load * np.tan(np.radians(residual + rough))
-        raise ValueError(f'friction "{kind}" is not known here')
+        return load * np.tan(np.radians(residual + rough))
 
     @property
     def min_friction(self):

@@ -114,8 +114,8 @@ class Pages(ReportTest):
 
     def test_energy(self):
         """Work on fractures is the negative of that of their traction; parts of it are sums over the sets. In J/m in 2D."""
-        work = {"loads": -200.0, "supports": 1500.0, "traction": -900.0, "face pressure": 100.0}
-        energy = {"elastic": 500.0, "work": work, "balance": {"wells": 120.0, "fracture flow": -20.0}, "unassigned": 1e-12}
+        work = {"loads": -200.0, "supports": 1500.0, "traction": -900.0, "face pressure": 100.0, "temperature": 300.0}
+        energy = {"elastic": 500.0, "released": 40.0, "work": work, "balance": {"wells": 120.0, "fracture flow": -20.0}, "unassigned": 1e-12}
         sets = {"a": {"friction_energy": 250.0, "fracture_energy": 100.0}, "b": {"friction_energy": 50.0}}
         for dim, unit in ((2, "kJ/m"), (3, "kJ")):
             (table,) = figures.of_energy({"energy": energy, "fractures": sets}, dim)
@@ -124,6 +124,7 @@ class Pages(ReportTest):
             self.assertEqual(rows["work on fractures"], "0.9")
             self.assertEqual((rows["– dissipated by slip"], rows["– fracture energy of bonds"]), ("0.3", "0.1"))
             self.assertEqual((rows["work of the fluid on the rock"], rows["fluid: fracture flow"]), ("0.1", "−0.02"))
+            self.assertEqual((rows["work of temperatures, from 0 K"], rows["released by extension or excavation"]), ("0.3", "0.04"))
             self.assertNotIn("unassigned", rows)
         self.assertEqual(list(figures.of_energy({}, 2)), [])
 

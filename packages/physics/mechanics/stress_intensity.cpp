@@ -412,8 +412,10 @@ class StressIntensity final : public estimate::TableOfStates {
     const auto kink = [&](auto p) { return laws::largest_hoop(K[p][0], K[p][1]); };
     column("K_hoop", unit, [&](auto p) { return kink(p).intensity; });
     column("toughness", unit, [&](auto p) {
-      const auto& one = fractures.at(mesh_.fracture_names[mesh_.single_fractures[fronts_[p].single].set]).toughness;
-      return one ? base::value_at("toughness", *one, base::positive(), fronts_[p].x) : std::nan("");
+      const auto& name = mesh_.fracture_names[mesh_.single_fractures[fronts_[p].single].set];
+      const auto& one = fractures.at(name).toughness;
+      const auto place = fmt::format("{}: Sprekk > Fractures > {}", setting_.scene.origin, name);
+      return one ? base::value_at(place, "toughness", *one, base::positive(), fronts_[p].x) : std::nan("");
     });
     for (int i = 0; i < 2; ++i)
       column(i == 0 ? "kink_x" : "kink_y", "-", [&](auto p) {
