@@ -158,7 +158,7 @@ template <class Evolution>
 void expect_one_root_for_any_history() {
   auto law = typical_law<Evolution>();
   law.distance = 0.01;
-  expect_one_root(law, 1, {0, -4.9, 1 / 1.93, -4.9, 0, 1 / (1.93 * 0.54)}, 2.4);
+  expect_one_root(law, 1, {0, -4.9, 1 / 1.93, -4.9, 0, 0.54 / 1.93}, 2.4);
   std::mt19937 random(1);
   const auto within = [&](Real size) { return std::uniform_real_distribution<Real>(-size, size)(random); };
   for (int k = 0; k < 3000; ++k) {
