@@ -213,7 +213,7 @@ TEST(ElasticPlasticJump, ProximalTermLeavesTheElasticJumpAlone) {
 }
 
 /// A face with springs much stiffer than the rock slides in the direction of its slip p: R_t = -s p - b with the bound
-/// b = 0.6 * 0.5 of the traction beside the springs. The state open, R = lambda - s (w - w_a), shows s.
+/// b = 0.6 * 0.5 of the traction without the springs. The state open, R = lambda - s (w - w_a), shows s.
 TEST(ElasticPlasticJump, ProximalTermStiffensTheProjection) {
   for (const auto& cell : all_cells) {
     ShiftedRock s(cell);
@@ -223,9 +223,12 @@ TEST(ElasticPlasticJump, ProximalTermStiffensTheProjection) {
     s.rock.system->globalisation().set_proximal_term(1000, s.x);
     s.set({closed, slip, 0}, {pulled, 0, 0});
     s.rock.system->raw_residual(s.x, r);
-    const Real per_stress = r[2]->getData()[0] / pulled, open = r[2]->getData()[1] / per_stress;
+    const bool has_face = r[2]->getLocalLength() > 0;
+    const Real per_stress = has_face ? r[2]->getData()[0] / pulled : 1,
+               open = has_face ? r[2]->getData()[1] / per_stress : 0;
     s.set({closed + opens, slip, 0}, {-0.5 - open / slip * opens, 0, 0});
     s.rock.system->raw_residual(s.x, r);
+    if (!has_face) continue;
     EXPECT_NEAR(r[2]->getData()[1] / per_stress - open, -0.6 * 0.5, 1e-12 * std::abs(open)) << cell;
   }
 }
