@@ -50,6 +50,21 @@ class Crossing(ProgramTest):
         self.assertLess(math.dist(*tips), 1e-6)
         self.assertAlmostEqual(found[0][1]["margin"], found[1][1]["margin"], delta=1e-6)
 
+    def test_restart(self):
+        """A restart after the crossing repeats the changes of the mesh."""
+        scene = crossing.write_scene(self.folder / "scene", "a4")
+        scene.write_text(scene.read_text().replace('<Parameter name="steps" type="int" value="1"/>', ""))
+        sets = ["Output.vtu=false", "Output.checkpoints.steps=1"]
+        whole = self.run_scene(scene, *sets, "Time.schedule={1, 1.1}")["steps"]
+        self.assertEqual(crossing.meeting(whole[:1])["state"], "crosses")
+        self.run_scene(scene, *sets, "Time.schedule={1}", output="part")
+        words = [word for one in (*sets, "Time.schedule={1, 1.1}") for word in ("--set", one)]
+        self.call("run", scene, "--output", "part", *words, "--restart")
+        tables = [steps[-1]["stress_intensity"] for steps in (whole, self.results("part")["steps"])]
+        for column in ("x", "y", "K_I"):
+            for a, b in zip(*(table[column] for table in tables), strict=True):
+                self.assertAlmostEqual(a, b, delta=1e-9 * abs(a) + 1e-12)
+
     def test_without_strength(self):
         """Without a strength beyond, every fracture is an end."""
         scene = crossing.write_scene(self.folder / "scene", "a3")
@@ -57,6 +72,10 @@ class Crossing(ProgramTest):
         met = crossing.meeting(self.run_scene(scene, "Output.vtu=false")["steps"])
         self.assertEqual(met["state"], "ends at")
         self.assertNotIn("margin", met)
+
+    def test_refused(self):
+        errors = self.call("check", self.scene("growth/edge_crack_2d.xml"), "--set", "Fractures.crack.strength=1e6", expect=1)[1]
+        self.assertIn('Fractures > crack > "strength": requires a "toughness"', errors)
 
     def test_fluid_enters_a_fracture_that_is_met(self):
         """The fluid of a crack that ends at a fracture fills both, at the same pressure; its volume is that injected."""
