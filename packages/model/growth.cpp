@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace sprekk::model {
 
@@ -119,7 +118,8 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   const auto scope = model.timers().scope("growth");
   if (!in_step_ || begin != begin_) {
     segments_.clear();
-    growth_.clear();
+    events_.clear();
+    added_.clear();
     n_rounds_ = 0;
   }
   in_step_ = true;
@@ -204,10 +204,20 @@ void Tips::apply(Model& model, const mesh::MeshChange& change, base::Log& log) {
   note(model.mesh(), model.change_mesh(change), log);
   if (before.empty()) return;
   for (const auto& [name, sum] : integrals(model))
-    if (const Real more = sum - before.at(name); std::abs(more) > 1e-13 * std::abs(sum)) {
-      auto& added = growth_["added"];
-      added[name] = more + (added.contains(name) ? added[name].get<Real>() : 0);
-    }
+    if (const Real more = sum - before.at(name); std::abs(more) > 1e-13 * std::abs(sum)) added_[name] += more;
+}
+
+nlohmann::json Tips::growth() const {
+  nlohmann::json growth = nlohmann::json::object();
+  if (!added_.empty()) growth["added"] = added_;
+  for (const auto& [fracture, met, x, how, margin] : events_) {
+    constexpr const char* states[] = {"ends", "grows", "ends at", "crosses"};
+    nlohmann::json event = {{"fracture", fracture}, {"x", x[0]}, {"y", x[1]}, {"state", states[how]}};
+    if (!met.empty()) event["met"] = met;
+    if (!met.empty() && !std::isnan(margin)) event["margin"] = margin;
+    growth["extensions"].push_back(event);
+  }
+  return growth;
 }
 
 void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made, base::Log& log) {
@@ -217,13 +227,8 @@ void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made,
   for (const auto& one : change_.extensions) {
     const auto& result = made[k];
     const auto met = name(result.met);
-    constexpr const char* states[] = {"ends", "grows", "ends at", "crosses"};
     const auto& tip = growing_[k++];
-    nlohmann::json event = {
-        {"fracture", name(tip.single)}, {"x", tip.x[0]}, {"y", tip.x[1]}, {"state", states[result.how]}};
-    if (!met.empty()) event["met"] = met;
-    if (!met.empty() && !std::isnan(tip.crossing)) event["margin"] = tip.crossing;
-    growth_["extensions"].push_back(event);
+    events_.push_back({name(tip.single), met, tip.x, result.how, tip.crossing});
     if (result == Extended::tip || result == Extended::crossing) segments_.push_back({result.begin, result.end});
     if (result == Extended::crossing)
       log.info("the tip at ({:.6g}, {:.6g}) crosses the fracture \"{}\"", one.tip[0], one.tip[1], met);

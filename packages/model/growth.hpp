@@ -3,9 +3,10 @@
 
 #include "mesh/bisect.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,7 @@ class Tips {
   /// Growth in the step: `added`, integrals over new faces at their begin, by name, and `extensions` in the order of
   /// their making. Each has the fracture, its old tip x, y, and its `state`: "grows", "crosses" or "ends at" another
   /// fracture `met`, with the `margin` of crossing, or "ends" without room.
-  const nlohmann::json& growth() const { return growth_; }
+  nlohmann::json growth() const;
 
  private:
   using Point = std::array<Real, 2>;
@@ -53,6 +54,12 @@ class Tips {
     Real ratio;     ///< intensity/toughness
     Real crossing;  ///< above 0: the tip crosses the fracture that it meets
     int single;     ///< single fracture
+  };
+  struct Event {
+    std::string fracture, met;
+    Point x;
+    mesh::Extended::How how;
+    Real margin;
   };
   struct Segment {
     Point begin, tip;
@@ -74,7 +81,8 @@ class Tips {
   std::vector<Point> arrested_;    ///< tips without room
   mesh::MeshChange change_;        ///< last one
   std::vector<Tip> growing_;       ///< of its extensions
-  nlohmann::json growth_ = nlohmann::json::object();
+  std::vector<Event> events_;      ///< of the step
+  std::map<std::string, Real> added_;
   std::vector<std::size_t> turned_;  ///< segments of its turns
 };
 
