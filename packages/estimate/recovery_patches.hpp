@@ -193,7 +193,7 @@ class RecoveryPatches {
     const auto& tip = tips_[patches_[p].tip];
     if (tip.factor[0] == 0) return f;
     f.singular = true;
-    f.modes = *tip_modes_.at(cell, tip.node, point.x);
+    f.modes = tip_modes_.at(cell, tip.node, point.x).value();
     for (int m = 0; m < n_modes; ++m) {
       f.evaluate(tip.fit[m], -1, f.modes[m]);
       for (int k = 0; k < Tensor::n; ++k) {

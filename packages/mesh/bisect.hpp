@@ -10,10 +10,17 @@ struct Extension {
   std::array<Real, 2> tip, direction;  ///< position, m; unit vector into the rock; zero: only bisect cells
   Real length;                         ///< m
   Real size;                           ///< largest edge of the cells within `length` of the new faces, m
+  Real beyond = 0;                     ///< length beyond another fracture that is met, m; 0: the extension ends there
 };
 
-/// Result of an extension: nothing, a new tip, or a junction with another fracture.
-enum class Extended { none, tip, junction };
+/// Result of an extension: nothing, a new tip, a junction with another fracture, or a tip beyond it.
+struct Extended {
+  enum How { none, tip, junction, crossing };
+  How how = none;
+  std::array<Real, 2> begin = {}, end = {};  ///< of the last straight part, m
+  int met = -1;                              ///< single fracture of a junction or crossing; -1: of a round before
+  bool operator==(How other) const { return how == other; }
+};
 
 /// Rotation of the last extension of a fracture about its beginning, counter-clockwise, in 2D.
 struct Turn {
@@ -55,8 +62,9 @@ class Bisection {
   /// Bisects cells near the extension to its size. Then moves nodes to the line of the extension or splits edges that
   /// cross it, and adds the edges along the line to the fracture at the tip. Nodes on fractures and boundaries do not
   /// move. If the line ends at another fracture, or less than half of the length before it, the extension ends at a
-  /// node of this fracture. Otherwise nothing but the bisection is done if a fracture or a boundary lies within half of
-  /// the length, or if cells would become too flat. `parent` as in refine(), of all calls so far. 2D.
+  /// node of this fracture, or it continues from there by `beyond` if there is room. Otherwise nothing but the
+  /// bisection is done if a fracture or a boundary lies within half of the length, or if cells would become too flat.
+  /// `parent` as in refine(), of all calls so far. 2D.
   Extended extend(const Extension& extension, std::vector<GlobalIndex>& parent);
   /// Rotates the nodes of an extension, and the nodes around it by a part of the angle. Returns false, without a
   /// change, if cells would become too flat. 2D.
@@ -87,7 +95,9 @@ class Bisection {
   class Patch;
 
   void refine_near(const Extension& extension, Real size, std::vector<GlobalIndex>& parent);
-  bool add_path(const Extension& extension, Real size, std::vector<GlobalIndex>& parent);
+  bool has_room(const Extension& extension, int met);
+  bool add_fitting_path(const Extension& extension, int single, bool refines, std::vector<GlobalIndex>& parent);
+  bool add_path(const Extension& extension, int single, Real size, std::vector<GlobalIndex>& parent);
   void take_faces(const GlobalMesh& mesh);
   void mark_edges();
   Cell child(const Cell& parent, int keeps, GlobalIndex middle) const;

@@ -71,10 +71,13 @@ class Bisection::Patch {
   bool is_on_other(GlobalIndex node, int single) const { return single_[node] >= 0 && single_[node] != single; }
   void fix(GlobalIndex node) { is_fixed_[node] = 1; }
 
-  bool is_at_obstacle(const Point& position, Real tolerance) const {
+  /// Returns the single fracture of a node inside the domain, `none` or `on_boundary`.
+  int single(GlobalIndex node) const { return single_[node]; }
+  /// Returns the node on a fracture or boundary at a position; -1: none.
+  GlobalIndex node_at(const Point& position, Real tolerance) const {
     for (GlobalIndex node = 0; node < n_nodes(); ++node)
-      if (is_obstacle(node) && norm(x(node) - position) <= tolerance) return true;
-    return false;
+      if (is_obstacle(node) && norm(x(node) - position) <= tolerance) return node;
+    return -1;
   }
   /// Returns the tip at a position; -1: none.
   GlobalIndex tip_at(const Point& position, Real tolerance) const {
@@ -83,17 +86,19 @@ class Bisection::Patch {
     return -1;
   }
 
-  /// Fracture at a tip: label of the side, and whether side minus is on the left when looking ahead.
+  /// End of a fracture: label of the side, and whether side minus is on the left when looking ahead.
   struct End {
     Label label;
     bool minus_on_left;
   };
-  End end_at(GlobalIndex tip) const {
+  /// Returns the end of a single fracture at a node, which is a tip or a junction.
+  End end_at(GlobalIndex tip, int single) const {
     for (const auto c : around_[tip])
       for (int k = 0; k < 3; ++k) {
         const auto& cell = of_.cells_[c];
-        if (cell.node[k] == tip || cell.label[k] < 0 || of_.labels_[cell.label[k]].fracture < 0) continue;
+        if (cell.node[k] == tip || cell.label[k] < 0) continue;
         const auto& label = of_.labels_[cell.label[k]];
+        if (label.fracture < 0 || label.single != single) continue;
         const GlobalIndex behind = cell.node[cell.node[(k + 1) % 3] == tip ? (k + 2) % 3 : (k + 1) % 3];
         const bool on_left = cross(x(tip) - x(behind), x(cell.node[k]) - x(behind)) > 0;
         return {label, on_left == (label.side == minus)};
@@ -249,51 +254,81 @@ Extended Bisection::extend(const Extension& wanted, std::vector<GlobalIndex>& pa
   SPREKK_CHECK(dim_ == 2, "extension: needs a mesh of triangles");
   auto e = wanted;
   refine_near(e, e.size, parent);
-  if (norm(e.direction) == 0) return Extended::tip;
-  bool meets = false;
+  if (norm(e.direction) == 0) return {Extended::tip};
+  int single, met = -1;
   {
     const Patch patch(*this);
     const GlobalIndex tip = patch.tip_at(e.tip, 1e-6 * e.length);
-    if (tip < 0 && patch.is_at_obstacle(e.tip, 1e-6 * e.length)) return Extended::junction;  // joined by another
+    if (tip < 0 && patch.node_at(e.tip, 1e-6 * e.length) >= 0) return {Extended::junction};  // joined by another
     SPREKK_CHECK(tip >= 0, "extension: there is no tip at ({}, {})", e.tip[0], e.tip[1]);
-    const int single = patch.end_at(tip).label.single;
+    single = patch.single(tip);
     const Point end = e.tip + e.length * e.direction;
     Real nearest = 0.75 * e.size;  // to the line
+    bool passes = false;
     for (GlobalIndex n = 0; n < patch.n_nodes(); ++n) {
       const Point r = patch.x(n) - wanted.tip;
       if (!patch.is_obstacle(n) || dot(r, wanted.direction) < 0.05 * wanted.length ||
           distance_to_segment(patch.x(n), wanted.tip, end) > 0.5 * wanted.length)
         continue;
-      if (!patch.is_on_other(n, single)) return Extended::none;
-      meets = true;
+      if (!patch.is_on_other(n, single)) return {};
+      passes = true;
       const Real off = std::abs(cross(wanted.direction, r));
       if (off >= nearest) continue;
       nearest = off;
+      met = patch.single(n);
       e.length = norm(r);
       e.direction = (1 / e.length) * r;
     }
-    if (meets && nearest == 0.75 * e.size) return Extended::none;  // another fracture passes by
+    if (passes && met < 0) return {};  // another fracture passes by
   }
-  for (const Real share : {1.0, 0.75, 0.5}) {  // finer cells if the path does not fit
-    if (!meets) refine_near(e, share * e.size, parent);
+  if (!add_fitting_path(e, single, met < 0, parent)) return {};
+  const Point end = e.tip + e.length * e.direction;
+  if (met < 0) return {Extended::tip, e.tip, end};
+  const Extension next{end, wanted.direction, wanted.beyond, wanted.size};
+  if (next.length > 0) {
+    refine_near(next, next.size, parent);
+    if (has_room(next, met) && add_fitting_path(next, single, true, parent))
+      return {Extended::crossing, end, end + next.length * next.direction, met};
+  }
+  return {Extended::junction, e.tip, end, met};
+}
+
+/// Returns whether no fracture or boundary is near an extension from a junction, apart from both that meet there.
+bool Bisection::has_room(const Extension& e, int met) {
+  const Patch patch(*this);
+  for (GlobalIndex n = 0; n < patch.n_nodes(); ++n) {
+    const Point r = patch.x(n) - e.tip;
+    const Real along = dot(r, e.direction);
+    if (patch.is_obstacle(n) && along > 0.05 * e.length && (patch.single(n) != met || along > 0.9 * norm(r)) &&
+        distance_to_segment(patch.x(n), e.tip, e.tip + e.length * e.direction) < 0.5 * e.length)
+      return false;
+  }
+  return true;
+}
+
+/// Adds the path of an extension, through finer cells if it does not fit. Returns false, without a path, if cells
+/// become too flat.
+bool Bisection::add_fitting_path(const Extension& e, int single, bool refines, std::vector<GlobalIndex>& parent) {
+  for (const Real share : {1.0, 0.75, 0.5}) {
+    if (refines) refine_near(e, share * e.size, parent);
     const auto cells = cells_;
     const auto coordinates = coordinates_;
     const auto parent_before = parent;
-    if (add_path(e, share * e.size, parent)) return meets ? Extended::junction : Extended::tip;
+    if (add_path(e, single, share * e.size, parent)) return true;
     cells_ = cells;
     coordinates_ = coordinates;
     parent = parent_before;
   }
-  return Extended::none;
+  return false;
 }
 
 /// Adds the path of an extension through cells of a size. Returns false, with a damaged mesh, if cells become too flat.
-bool Bisection::add_path(const Extension& e, Real size, std::vector<GlobalIndex>& parent) {
+bool Bisection::add_path(const Extension& e, int single, Real size, std::vector<GlobalIndex>& parent) {
   Patch patch(*this);
-  const GlobalIndex tip = patch.tip_at(e.tip, 1e-6 * e.length);
+  const GlobalIndex tip = patch.node_at(e.tip, 1e-6 * e.length);
   const auto along = [&](GlobalIndex n) { return dot(patch.x(n) - e.tip, e.direction); };
-  const auto fracture = patch.end_at(tip);
-  const bool ends = patch.is_at_obstacle(e.tip + e.length * e.direction, 1e-9 * size);
+  const auto fracture = patch.end_at(tip, single);
+  const bool ends = patch.node_at(e.tip + e.length * e.direction, 1e-9 * size) >= 0;
   std::vector<GlobalIndex> path{tip};
   for (bool ended = false; !ended;) {
     const GlobalIndex from = path.back();
@@ -349,14 +384,17 @@ bool Bisection::turn(const Turn& t) {
     return std::abs(cross(d, r)) < 1e-6 * length * length && dot(d, r) > 0 && norm(r) < (1 + 1e-6) * length;
   };
   constexpr Real inner = 0.15, largest = 1.75;  // rad
-  const Real reach = 2.5 * length;
-  Real window = largest;
+  Real reach = 2.5 * length, window = largest;
   for (GlobalIndex n = 0; n < patch.n_nodes(); ++n) {
     const Point r = patch.x(n) - t.begin;
-    if (patch.is_fixed(n) && norm(r) < reach && norm(r) > 1e-9 * length && !on_path(r))
-      window = std::min(window, Real(0.95) * std::abs(angle(r)));
+    if (!patch.is_fixed(n) || norm(r) >= reach || norm(r) <= 1e-9 * length || on_path(r)) continue;
+    const Real limit = 0.95 * std::abs(angle(r));
+    if (limit < inner + 2 * std::abs(t.angle))
+      reach = 0.95 * norm(r);  // ahead
+    else
+      window = std::min(window, limit);
   }
-  if (window < inner + 2 * std::abs(t.angle)) return false;
+  if (reach < 1.3 * length) return false;
   for (GlobalIndex n = 0; n < patch.n_nodes(); ++n) {
     const Point r = patch.x(n) - t.begin;
     if (norm(r) >= reach || norm(r) == 0) continue;

@@ -70,6 +70,14 @@ Real ridge_length(const Mesh& mesh, LocalIndex face, int k) {
   return mesh.dim() == 2 ? 1 : norm(face_corner(mesh, face, k + 1) - face_corner(mesh, face, k));
 }
 
+Vector place(const FaceCorners& corners, const std::array<Real, 3>& xi) {
+  const auto& x = corners.x;
+  if (corners.n == 2) return x[0] + xi[0] * (x[1] - x[0]);
+  if (corners.n == 3) return x[0] + xi[0] * (x[1] - x[0]) + xi[1] * (x[2] - x[0]);
+  const Real a = (1 + xi[0]) / 2, b = (1 + xi[1]) / 2;
+  return (1 - a) * ((1 - b) * x[0] + b * x[3]) + a * ((1 - b) * x[1] + b * x[2]);
+}
+
 Vector face_centre(const FaceCorners& corners) {
   Vector sum{};
   for (int k = 0; k < corners.n; ++k) sum = sum + corners.x[k];

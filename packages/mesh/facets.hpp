@@ -81,6 +81,8 @@ Real ridge_length(const Mesh& mesh, LocalIndex face, int k);
 
 /// Mean of the corners of a face.
 Vector face_centre(const FaceCorners& corners);
+/// Point of a face at coordinates on the reference edge [0, 1], triangle, or square [-1, 1]^2.
+Vector place(const FaceCorners& corners, const std::array<Real, 3>& xi);
 Vector face_centre(const GlobalMesh& mesh, GlobalIndex cell, int local_face);
 
 /// Mean of the corners of a cell.

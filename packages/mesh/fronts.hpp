@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/facets.hpp"
+#include "mesh/matrix.hpp"
 
 #include <array>
 #include <functional>
@@ -34,6 +35,21 @@ struct FrontPoint {
   /// Returns the distance of a point behind the front from the edges of the mesh along the front. They are chords of
   /// the circle: the faces of the mesh begin at the chords.
   Real distance(const Vector& point) const;
+};
+
+/// Virtual advance of a front at a point.
+struct Advance {
+  FrontPoint::Local local;
+  Vector q;   ///< weight w times the direction ahead
+  Matrix dq;  ///< [k][j] derivative of q_k along j, 1/m
+  Real weight;
+
+  Advance(const FrontPoint& front, const Vector& x) : local(front.at(x)) {
+    Vector g;
+    weight = front.weight(x, g);
+    q = weight * local.ahead;
+    for (int k = 0; k < 3; ++k) dq[k] = local.ahead[k] * g + (weight * local.curvature * local.along[k]) * local.along;
+  }
 };
 
 /// Constants of the rock in a local cell: a domain of integration contains cells of equal constants only.

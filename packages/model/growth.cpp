@@ -5,6 +5,7 @@
 #include "base/parameters.hpp"
 #include "estimate/state_table.hpp"
 #include "mesh/facets.hpp"
+#include "model/json_keys.hpp"
 #include "model/model.hpp"
 #include "model/steps.hpp"
 
@@ -32,6 +33,22 @@ Real angle_between(const Point& begin, const Point& tip, const Point& direction)
   return std::atan2(x * direction[1] - y * direction[0], x * direction[0] + y * direction[1]);
 }
 
+/// Integrals over all fracture faces, by name, and their area.
+std::map<std::string, Real> integrals(Model& model) {
+  const auto& mesh = model.mesh();
+  std::map<std::string, Real> sums;
+  const auto add = [&](const std::string& name, const auto& value) {
+    Real sum = 0;
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) sum += mesh.fracture_faces[f].area * value(f);
+    sums[name] += base::sum_over_ranks(*mesh.comm, sum);
+  };
+  add("area", [](LocalIndex) { return 1; });
+  for (const auto& output : model.system().outputs(model.state()))
+    if (output.summary.kind == assembly::Summary::integral && output.n_components == 1)
+      add(with_underscores(output.summary.name), [&](LocalIndex f) { return output.values[f]; });
+  return sums;
+}
+
 }  // namespace
 
 void Growth::describe(base::Section& s) {
@@ -57,11 +74,15 @@ std::vector<Tips::Tip> Tips::tips_of(Model& model) const {
       return nullptr;
     };
     const auto *x = column("x"), *y = column("y"), *K = column("K_hoop"), *toughness = column("toughness"),
-               *kink_x = column("kink_x"), *kink_y = column("kink_y");
+               *kink_x = column("kink_x"), *kink_y = column("kink_y"), *crossing = column("crossing");
     if (!K || !toughness || !kink_x || !kink_y) return;
     for (std::size_t k = 0; k < K->size(); ++k)
       if (!std::isnan((*toughness)[k]))
-        tips.push_back({{(*x)[k], (*y)[k]}, {(*kink_x)[k], (*kink_y)[k]}, (*K)[k] / (*toughness)[k]});
+        tips.push_back({{(*x)[k], (*y)[k]},
+                        {(*kink_x)[k], (*kink_y)[k]},
+                        (*K)[k] / (*toughness)[k],
+                        crossing ? (*crossing)[k] : std::nan(""),
+                        table.fractures[k]});
   });
   return tips;
 }
@@ -70,8 +91,10 @@ void Tips::begin(Model& model) {
   const auto& growth = model.scene().growth;
   if (!growth) return;
   const auto& mesh = model.mesh();
+  arrested_ = model.tips_without_room();
   mesh::MeshChange change;
   for (const auto& tip : tips_of(model)) {
+    if (std::isnan(tip.ratio) && model.time() > model.scene().time.start) arrested_.push_back(tip.x);
     const bool is_coarse = base::any_rank(*mesh.comm, [&] {
       for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
         for (const int k : {0, 1}) {
@@ -89,11 +112,14 @@ void Tips::begin(Model& model) {
 mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   change_ = {};
   turned_.clear();
+  growing_.clear();
   const auto& growth = model.scene().growth;
   if (!growth) return change_;
   const auto scope = model.timers().scope("growth");
   if (!in_step_ || begin != begin_) {
     segments_.clear();
+    events_.clear();
+    added_.clear();
     n_rounds_ = 0;
   }
   in_step_ = true;
@@ -130,7 +156,7 @@ void Tips::warn_about(const Segment& one, base::Log& log) const {
 
 /// Adds turns of the extensions that disagree with the direction of growth at their tips, by the secant method. The
 /// slope of the angle between both over the turn is -1 for straight cracks under tension, about -3 for wings of a flaw
-/// that slides.
+/// that slides, and far below under a large deviatoric load.
 void Tips::turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log) {
   for (std::size_t k = 0; k < segments_.size(); ++k) {
     auto& one = segments_[k];
@@ -148,7 +174,7 @@ void Tips::turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& l
     one.angle = angle;
     if (one.is_settled && std::abs(angle) > growth.turn * M_PI / 180) warn_about(one, log);
     if (one.is_settled) continue;
-    const Real slope = one.n_turns == 0 ? -2.5 : std::clamp<Real>(change / one.turned, -6, -0.7);
+    const Real slope = one.n_turns == 0 ? -2.5 : std::clamp<Real>(change / one.turned, -100, -0.7);
     one.turned = std::clamp(-angle / slope, -largest_turn, largest_turn);
     ++one.n_turns;
     change_.turns.push_back({one.begin, one.tip, one.turned});
@@ -166,30 +192,59 @@ void Tips::extend(const Growth& growth, const std::vector<Tip>& tips) {
     if (may_grow(tip.x) && tip.ratio > largest) largest = tip.ratio;
   if (largest < 1) return;
   for (const auto& tip : tips)
-    if (may_grow(tip.x) && tip.ratio >= std::min<Real>(1, together * largest))
-      change_.extensions.push_back({tip.x, tip.direction, growth.segment, new_size(growth)});
+    if (may_grow(tip.x) && tip.ratio >= std::min<Real>(1, together * largest)) {
+      change_.extensions.push_back(
+          {tip.x, tip.direction, growth.segment, new_size(growth), tip.crossing > 0 ? growth.segment : 0});
+      growing_.push_back(tip);
+    }
 }
 
-void Tips::note(const std::vector<int>& made, base::Log& log) {
+void Tips::apply(Model& model, const mesh::MeshChange& change, base::Log& log) {
+  const auto before = model.scene().growth ? integrals(model) : std::map<std::string, Real>();
+  note(model.mesh(), model.change_mesh(change), log);
+  if (before.empty()) return;
+  for (const auto& [name, sum] : integrals(model))
+    if (const Real more = sum - before.at(name); std::abs(more) > 1e-13 * std::abs(sum)) added_[name] += more;
+}
+
+nlohmann::json Tips::growth() const {
+  nlohmann::json growth = nlohmann::json::object();
+  if (!added_.empty()) growth["added"] = added_;
+  for (const auto& [fracture, met, x, how, margin] : events_) {
+    constexpr const char* states[] = {"ends", "grows", "ends at", "crosses"};
+    nlohmann::json event = {{"fracture", fracture}, {"x", x[0]}, {"y", x[1]}, {"state", states[how]}};
+    if (!met.empty()) event["met"] = met;
+    if (!met.empty() && !std::isnan(margin)) event["margin"] = margin;
+    growth["extensions"].push_back(event);
+  }
+  return growth;
+}
+
+void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made, base::Log& log) {
+  using mesh::Extended;
+  const auto name = [&](int single) { return single < 0 ? "" : mesh.single_fractures[single].name; };
   std::size_t k = 0;
   for (const auto& one : change_.extensions) {
-    const auto result = static_cast<mesh::Extended>(made[k++]);
-    if (result == mesh::Extended::junction) {
-      log.info("the tip at ({:.6g}, {:.6g}) has met another fracture", one.tip[0], one.tip[1]);
-    } else if (result == mesh::Extended::tip) {
-      segments_.push_back(
-          {one.tip, {one.tip[0] + one.length * one.direction[0], one.tip[1] + one.length * one.direction[1]}});
-    } else {
-      arrested_.push_back(one.tip);
-      log.warning(
-          "the tip at ({:.6g}, {:.6g}) ends its growth: a fracture or a boundary is nearer than half of the "
-          "\"segment\", or cells would be too flat",
-          one.tip[0], one.tip[1]);
-    }
+    const auto& result = made[k];
+    const auto met = name(result.met);
+    const auto& tip = growing_[k++];
+    events_.push_back({name(tip.single), met, tip.x, result.how, tip.crossing});
+    if (result == Extended::tip || result == Extended::crossing) segments_.push_back({result.begin, result.end});
+    if (result == Extended::crossing)
+      log.info("the tip at ({:.6g}, {:.6g}) crosses the fracture \"{}\"", one.tip[0], one.tip[1], met);
+    else if (result == Extended::junction)
+      log.info("the tip at ({:.6g}, {:.6g}) has met another fracture{}", one.tip[0], one.tip[1],
+               met.empty() ? "" : fmt::format(", \"{}\", and ends there", met));
+    if (result != Extended::none) continue;
+    arrested_.push_back(one.tip);
+    log.warning(
+        "the tip at ({:.6g}, {:.6g}) ends its growth: a fracture or a boundary is nearer than half of the "
+        "\"segment\", or cells would be too flat",
+        one.tip[0], one.tip[1]);
   }
   for (const std::size_t s : turned_) {
     auto& one = segments_[s];
-    if (!made[k++]) {
+    if (made[k++] == Extended::none) {
       one.is_settled = true;
       warn_about(one, log);
       continue;

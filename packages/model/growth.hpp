@@ -3,7 +3,10 @@
 
 #include "mesh/bisect.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,16 +38,28 @@ class Tips {
   /// Columns of a table of the physics define the growth: position x, y, intensity K_hoop, `toughness`, and direction
   /// kink_x, kink_y of growth, of each tip. First the last extensions are turned until they agree with the direction of
   /// growth at their new tips. Then all tips with K_hoop >= toughness grow by an extension, together with those of the
-  /// same ratio up to 2 %.
+  /// same ratio up to 2 %. A tip with a positive `crossing` crosses the fracture that its extension meets.
   mesh::MeshChange for_step(Model& model, Real begin, base::Log& log);
-  /// Notes which extensions and turns were made, in the order of the change.
-  void note(const std::vector<int>& made, base::Log& log);
+  /// Changes the mesh of a model at the begin of the step, and notes the results and the integrals that they add.
+  void apply(Model& model, const mesh::MeshChange& change, base::Log& log);
+  /// Growth in the step: `added`, integrals over new faces at their begin, by name, and `extensions` in the order of
+  /// their making. Each has the fracture, its old tip x, y, and its `state`: "grows", "crosses" or "ends at" another
+  /// fracture `met`, with the `margin` of crossing, or "ends" without room.
+  nlohmann::json growth() const;
 
  private:
   using Point = std::array<Real, 2>;
   struct Tip {
     Point x, direction;
-    Real ratio;  ///< intensity/toughness
+    Real ratio;     ///< intensity/toughness
+    Real crossing;  ///< above 0: the tip crosses the fracture that it meets
+    int single;     ///< single fracture
+  };
+  struct Event {
+    std::string fracture, met;
+    Point x;
+    mesh::Extended::How how;
+    Real margin;
   };
   struct Segment {
     Point begin, tip;
@@ -53,6 +68,7 @@ class Tips {
     bool is_settled = false;
   };
   std::vector<Tip> tips_of(Model& model) const;
+  void note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made, base::Log& log);
   void turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log);
   void warn_about(const Segment& one, base::Log& log) const;
   bool may_grow(const Point& tip) const;
@@ -60,10 +76,13 @@ class Tips {
 
   Real begin_ = 0;
   bool in_step_ = false;
-  int n_rounds_ = 0;                 ///< of extensions in the step
-  std::vector<Segment> segments_;    ///< of the step
-  std::vector<Point> arrested_;      ///< tips without room
-  mesh::MeshChange change_;          ///< last one
+  int n_rounds_ = 0;               ///< of extensions in the step
+  std::vector<Segment> segments_;  ///< of the step
+  std::vector<Point> arrested_;    ///< tips without room
+  mesh::MeshChange change_;        ///< last one
+  std::vector<Tip> growing_;       ///< of its extensions
+  std::vector<Event> events_;      ///< of the step
+  std::map<std::string, Real> added_;
   std::vector<std::size_t> turned_;  ///< segments of its turns
 };
 

@@ -36,7 +36,7 @@ nlohmann::json to_json(const std::vector<mesh::MeshChange>& changes) {
   auto all = nlohmann::json::array();
   for (const auto& one : changes) {
     auto extensions = nlohmann::json::array(), turns = nlohmann::json::array();
-    for (const auto& e : one.extensions) extensions.push_back({e.tip, e.direction, e.length, e.size});
+    for (const auto& e : one.extensions) extensions.push_back({e.tip, e.direction, e.length, e.size, e.beyond});
     for (const auto& t : one.turns) turns.push_back({t.begin, t.tip, t.angle});
     all.push_back(extensions.empty() && turns.empty() ? nlohmann::json(one.cells)
                                                       : nlohmann::json{one.cells, extensions, turns});
@@ -47,7 +47,8 @@ nlohmann::json to_json(const std::vector<mesh::MeshChange>& changes) {
 mesh::MeshChange mesh_change(const nlohmann::json& saved) {
   if (saved.empty() || !saved[0].is_array()) return {saved.get<std::vector<GlobalIndex>>()};
   mesh::MeshChange change{saved[0].get<std::vector<GlobalIndex>>()};
-  for (const auto& e : saved[1]) change.extensions.push_back({e[0], e[1], e[2], e[3]});
+  for (const auto& e : saved[1])
+    change.extensions.push_back({e[0], e[1], e[2], e[3], e.size() > 4 ? e[4].get<Real>() : 0});
   for (const auto& t : saved[2]) change.turns.push_back({t[0], t[1], t[2]});
   return change;
 }
@@ -236,21 +237,29 @@ void Model::change(const Scene& changed) {
   replace(std::move(system), std::move(x));
 }
 
-std::vector<int> Model::change_mesh(const mesh::MeshChange& change) {
+std::vector<mesh::Extended> Model::change_mesh(const mesh::MeshChange& change) {
   SPREKK_CHECK(scene_.bisection, "{}: the mesh of a model without Scene::bisection cannot be refined", scene_.origin);
   const auto scope = timers_->scope("refinement");
   const auto comm = whole_mesh_->comm;
   std::vector<GlobalIndex> parent;  // on rank 0
-  std::vector<int> made(change.extensions.size() + change.turns.size(), 0);
+  std::vector<std::array<Real, 6>> made(change.extensions.size() + change.turns.size());
   base::collectively(*comm, [&] {
     auto& bisection = *scene_.bisection;
     if (!bisection) return;
     parent = bisection->refine(change.cells, mesh().dim());
     std::size_t k = 0;
-    for (const auto& one : change.extensions) made[k++] = static_cast<int>(bisection->extend(one, parent));
-    for (const auto& one : change.turns) made[k++] = bisection->turn(one);
+    for (const auto& one : change.extensions) {
+      const auto e = bisection->extend(one, parent);
+      made[k++] = {Real(e.how), e.begin[0], e.begin[1], e.end[0], e.end[1], Real(e.met)};
+    }
+    for (const auto& one : change.turns) made[k++][0] = bisection->turn(one);
   });
   if (!made.empty()) made = base::sum_over_ranks(*comm, made);
+  std::vector<mesh::Extended> results;
+  for (const auto& m : made)
+    results.push_back({static_cast<mesh::Extended::How>(m[0]), {m[1], m[2]}, {m[3], m[4]}, static_cast<int>(m[5])});
+  for (std::size_t k = 0; k < change.extensions.size(); ++k)
+    if (results[k] == mesh::Extended::none) without_room_.push_back(change.extensions[k].tip);
   auto prepared = model::prepared(scene_);
   std::string unconstrained;
   whole_mesh_ = make_whole_mesh(prepared, comm, unconstrained);
@@ -259,7 +268,7 @@ std::vector<int> Model::change_mesh(const mesh::MeshChange& change) {
   transfer({mesh(), system->mesh(), parent}, *system_, x_, *system, x);
   mesh_changes_.push_back(change);
   replace(std::move(system), std::move(x));
-  return made;
+  return results;
 }
 
 void Model::replace(std::unique_ptr<assembly::System> system, fields::BlockVector x) {

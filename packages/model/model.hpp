@@ -54,9 +54,11 @@ class Model {
   /// long, and adjacent cells as necessary. The state is transferred, see transfer(); it counts as a change. Throws an
   /// Error if the scene has no Scene::bisection.
   void refine(const std::vector<GlobalIndex>& cells) { change_mesh({cells}); }
-  /// Like refine(), with extensions of fractures in 2D. New faces have their initial state. Returns for each
-  /// extension its mesh::Extended, for each turn whether it was made.
-  std::vector<int> change_mesh(const mesh::MeshChange& change);
+  /// Like refine(), with extensions of fractures in 2D. New faces have their initial state. Returns the results of
+  /// extensions, and Extended::tip for each turn that was made.
+  std::vector<mesh::Extended> change_mesh(const mesh::MeshChange& change);
+  /// Returns the tips of all extensions so far that had no room, also before a restart. Stored data.
+  const std::vector<std::array<Real, 2>>& tips_without_room() const { return without_room_; }
 
   /// Finds an equilibrium at time() after changes of the scene, of fields or of host modules. Behaves otherwise like
   /// step_to(). Throws an Error in models with storage, which requires time.
@@ -135,7 +137,8 @@ class Model {
   Real time_ = 0;
   int n_changes_ = 0;
   std::vector<mesh::MeshChange> mesh_changes_;  ///< of all calls of change_mesh()
-  std::optional<Beginning> beginning_;          // of the last step
+  std::vector<std::array<Real, 2>> without_room_;
+  std::optional<Beginning> beginning_;  // of the last step
 };
 
 /// Makes the modules of a scene, which together form its equation system. Collective.

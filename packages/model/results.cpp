@@ -207,6 +207,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
                {"cuts", report.cuts},
                {"converged", report.converged}};
   if (!taken.stage.empty()) step["stage"] = taken.stage;
+  if (!taken.growth.empty()) step["growth"] = taken.growth;
   if (model_.scene().time.chooses_steps()) {
     step["length"] = report.time - taken.begin;
     step["rejected"] = taken.n_rejected;

@@ -23,6 +23,8 @@ struct StepTaken {
   int n_rejected = 0;              ///< rejected attempts
   int rejected_iterations = 0;     ///< Newton iterations in rejected attempts
   std::string warning = "";        ///< set if the error exceeds its tolerance
+  /// Growth of fractures, see Tips::growth()
+  nlohmann::json growth = nlohmann::json::object();
 };
 
 /// Driver of a model through the section Time of its scene. A host with adaptive steps uses it as a run does. Members

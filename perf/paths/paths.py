@@ -1,17 +1,19 @@
-"""Growth along free paths: wings of a sliding flaw, and injection into a straight crack between rollers.
+"""Growth along free paths: wings of a sliding flaw, injection into a straight crack between rollers, crossing of fractures.
 
 The rows of the wings compare tip, load and direction with a boundary integral method, with K_II = 0 along the path. The
-rows of injection compare pressure and length with the exact crack that contains the fluid. The last line gives the
-number of failures, the largest errors of tips (relative to the half-length of the flaw), loads and pressures, the median
+rows of injection compare pressure and length with the exact crack that contains the fluid. Those of crossing
+compare the margin of crossing with the criterion at given far stresses. The last line gives the number of failures and
+of wrong outcomes, the largest errors of tips (relative to the half-length of the flaw), loads and pressures, the median
 of Newton iterations per step, and the share of time for changes of the mesh."""
 import math
 import statistics
 
 from perf.common import options as common
 from perf.common import program, table
+from perf.paths import crossing
 
 COLUMNS = {"row": "", "length": ".4f", "error of the tip": ".2%", "load": ".4g", "exact load": ".4g", "error": ".2%", "newton": "d", "seconds": ".1f"}
-BOUNDS = {"failures": 0, "worst_tip": 0.005, "worst_load": 0.01, "worst_pressure": 0.01, "newton_median": 6, "remeshing": 0.3}
+BOUNDS = {"failures": 0, "wrong": 0, "worst_tip": 0.005, "worst_load": 0.01, "worst_pressure": 0.01, "newton_median": 6, "remeshing": 0.3}
 FORMATS = {"worst_tip": ".4f", "worst_load": ".4f", "worst_pressure": ".4f", "newton_median": ".0f", "remeshing": ".2f"}
 REMESHING = ("growth", "refinement")  # timers
 
@@ -77,13 +79,32 @@ def injection(run, shown):
     return [max(one) for one in zip(*errors)]
 
 
+def crossings(options, shown, failed):
+    """Runs all cases and adds their rows, with margins as loads. Returns the runs and the number of wrong outcomes."""
+    runs, wrong = [], 0
+    for case, (*stresses, crosses) in crossing.CASES.items():
+        scene = crossing.write_scene(options.output / case, case)
+        try:
+            run = program.succeeded(options.binary, scene, options.output / case / "out", ["Output.vtu=false", *options.set])
+        except program.Failed as reason:
+            failed.append(f"failed: crossing {case}: {reason}")
+            print(failed[-1], flush=True)
+            continue
+        met, exact = crossing.meeting(run.steps), crossing.exact_margin(*stresses)
+        wrong += met is None or (met["state"] == "crosses") != crosses
+        runs.append(run)
+        shown.add([f"crossing {case}: {met['state'] if met else 'none'}", met and met["x"], None, met and met["margin"], exact,
+                   met and met["margin"] - exact, run.newton[-1], run.seconds])
+    return runs, wrong
+
+
 NONE = (math.nan, math.nan)
 RUNS = (("wings", "growth/wing_cracks_2d.xml", [], wings), ("injection", "growth/edge_crack_2d.xml", INJECTION, injection))
 
 
 def main(words):
     options = common.parser("paths", __doc__, only=None).parse_args(words)
-    shown, failed, found, newton, spent, whole = table.Table(COLUMNS, 24), [], {}, [], 0, 0
+    shown, failed, found, runs = table.Table(COLUMNS, 24), [], {}, []
     for name, scene, entries, rows in RUNS[1:] if options.quick else RUNS:
         try:
             run = program.succeeded(options.binary, scene, options.output / name, [*entries, "Output.vtu=false", *options.set])
@@ -92,11 +113,15 @@ def main(words):
             failed.append(f"failed: {name}: {reason}")
             print(failed[-1], flush=True)
             continue
-        newton += run.newton
-        timing = run.results["timing"]
-        spent += sum(timing.get(one, {}).get("seconds", 0) for one in REMESHING)
-        whole += run.seconds
-    values = {"failures": len(failed), "worst_tip": max((one[0] for one in found.values()), default=math.nan), "worst_load": found.get("wings", NONE)[1],
+        runs.append(run)
+    wrong = 0
+    if not options.quick:
+        crossed, wrong = crossings(options, shown, failed)
+        runs += crossed
+    newton = [iterations for run in runs for iterations in run.newton]
+    spent = sum(run.results["timing"].get(one, {}).get("seconds", 0) for run in runs for one in REMESHING)
+    whole = sum(run.seconds for run in runs)
+    values = {"failures": len(failed), "wrong": wrong, "worst_tip": max((one[0] for one in found.values()), default=math.nan), "worst_load": found.get("wings", NONE)[1],
               "worst_pressure": found.get("injection", NONE)[1], "newton_median": statistics.median(newton) if newton else math.nan, "remeshing": spent / whole if whole else math.nan}
     bounds = {"failures": 0, "worst_pressure": 0.01} if options.quick else BOUNDS
     return table.finish(options, shown, values, FORMATS, bounds, failed)

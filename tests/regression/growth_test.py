@@ -88,6 +88,7 @@ class Growth(ProgramTest):
 
         def volume(a, pressure):  # opening of the half crack between rollers, from dv/da = 4 K^2/(E' p^2)
             return -8 * W**2 / (math.pi * E) * pressure * math.log(math.cos(math.pi * a / 2 / W))
+        added = {"area": 0, "fluid_volume": 0}
         for step in steps:
             (x, y, _), = tips(step)
             crack, injected = step["fractures"]["crack"], rate * step["time"]
@@ -96,6 +97,12 @@ class Growth(ProgramTest):
             a = 0.6
             while volume(a, 1e6 / math.sqrt(2 * W * math.tan(math.pi * a / 2 / W))) < crack["fluid_volume"]:
                 a += 1e-4
+            added["area"] += step.get("growth", {}).get("added", {}).get("area", 0)
+            added["fluid_volume"] += step.get("growth", {}).get("added", {}).get("fluid_volume", 0)
+            self.assertAlmostEqual(added["area"], x - 0.6, delta=1e-9)
+            self.assertAlmostEqual(added["fluid_volume"], residual * (x - 0.6), delta=1e-9 * residual)
+            mass = crack["fluid_volume"] * (1 + 4.5e-10 * crack["mean_fracture_pressure"])  # of the reference density
+            self.assertAlmostEqual(mass, injected + residual * 0.6 + added["fluid_volume"], delta=1e-6 * injected)
             self.assertGreater(x, a - 0.005)
             self.assertLess(x, a + 0.05 + 0.005)
         self.assertGreater(x, 0.79)
@@ -111,6 +118,11 @@ class Growth(ProgramTest):
         sets[-1] = "Time.steps=3"
         errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *sets)[1]
         self.assertIn("ends its growth: a fracture or a boundary", errors)
+        sets[-1:] = ["Output.checkpoints.steps=1", "--set", "Time.schedule={0.7, 1.4, 1.7, 2}"]
+        self.assertIn("ends its growth", self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--set", "Time.schedule={0.7, 1.4, 1.7}")[1])
+        errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--restart")[1]
+        for text in ("ends its growth", "cannot grow"):
+            self.assertNotIn(text, errors)
 
     def test_junction(self):
         """A crack that meets another fracture ends there; the load then opens both."""

@@ -139,6 +139,11 @@ void Mechanics::Fracture::describe(base::Section& s) {
       s, toughness, "toughness", "Pa*m^0.5", base::positive(),
       "intensity of the largest hoop stress at which a tip grows, a value or an expression of x, y; includes "
       "\"stress intensity\"; 2D; see the section \"Growth\"");
+  entry_of_place(
+      s, strength, "strength", "Pa", base::positive(),
+      "tensile strength of the rock beyond other fractures that a growing tip meets, a value or an expression of x, "
+      "y; the tip crosses a fracture if the rock beyond parts before the fracture slips; absent: it ends there");
+  if (s.complete() && strength && !toughness) s.fail("strength", "requires a \"toughness\"");
   s.section(prescribed_slip, "prescribed slip", "slip as a function of position and time, in place of friction");
 }
 

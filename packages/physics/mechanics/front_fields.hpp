@@ -1,4 +1,4 @@
-// Integrands of the interaction integral at a point: virtual advance of a front, and crack fields.
+// Crack fields at a front, in global components.
 #pragma once
 
 #include "laws/crack_field.hpp"
@@ -10,17 +10,7 @@ namespace sprekk::physics::front {
 
 using mesh::Vector;
 using mesh::operator+, mesh::operator*;
-using Matrix = std::array<Vector, 3>;  // [row][column]
-
-inline Real product(const Matrix& A, const Matrix& B) {
-  return mesh::dot(A[0], B[0]) + mesh::dot(A[1], B[1]) + mesh::dot(A[2], B[2]);
-}
-inline Vector times(const Matrix& A, const Vector& v) {
-  return {mesh::dot(A[0], v), mesh::dot(A[1], v), mesh::dot(A[2], v)};
-}
-/// Returns A^T v.
-inline Vector transposed_times(const Matrix& A, const Vector& v) { return v[0] * A[0] + v[1] * A[1] + v[2] * A[2]; }
-inline Real trace(const Matrix& A) { return A[0][0] + A[1][1] + A[2][2]; }
+using mesh::Advance, mesh::Matrix, mesh::product, mesh::times, mesh::transposed_times, mesh::trace;
 
 inline Matrix stress(const laws::Elasticity& law, const Matrix& H) {
   Matrix s;
@@ -44,20 +34,6 @@ inline std::array<Real, 3> constants(const laws::Elasticity& rock, Real label) {
 inline laws::Elasticity rock_at(const mesh::FrontPoint& front) {
   return {front.rock[0], front.rock[1] - front.rock[0]};
 }
-
-struct Advance {
-  mesh::FrontPoint::Local local;
-  Vector q;   // w times the direction ahead
-  Matrix dq;  // [k][j] derivative of q_k along j, 1/m
-  Real weight;
-
-  Advance(const mesh::FrontPoint& front, const Vector& x) : local(front.at(x)) {
-    Vector g;
-    weight = front.weight(x, g);
-    q = weight * local.ahead;
-    for (int k = 0; k < 3; ++k) dq[k] = local.ahead[k] * g + (weight * local.curvature * local.along[k]) * local.along;
-  }
-};
 
 /// Crack fields of unit intensity of all modes, in global components.
 inline std::array<Virtual, 3> virtual_fields(const mesh::FrontPoint& front, const mesh::FrontPoint::Local& at) {

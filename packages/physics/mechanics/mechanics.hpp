@@ -83,6 +83,7 @@ struct Mechanics : Physics<Mechanics> {
     std::optional<base::Expression> unbroken;   ///< above 0: bonded at the start, see unbroken.hpp
     bool stress_intensity = false;              ///< table of StressIntensity
     std::optional<base::Expression> toughness;  ///< Pa m^0.5; the table then has directions of growth
+    std::optional<base::Expression> strength;   ///< Pa, tensile, of the rock beyond fractures that the tips meet
     void describe(base::Section& section);
   };
 

@@ -6,9 +6,7 @@
 #include "base/check.hpp"
 #include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
-#include "laws/kink.hpp"
-#include "physics/mechanics/front_fields.hpp"
-#include "physics/mechanics/front_loads.hpp"
+#include "physics/mechanics/crossing.hpp"
 #include "physics/scene.hpp"
 
 #include <algorithm>
@@ -76,7 +74,10 @@ class StressIntensity final : public estimate::TableOfStates {
       jumps = base::sum_over_ranks(*mesh_.comm, jumps);
       roots = base::sum_over_ranks(*mesh_.comm, roots);
     }
-    return table(sums, jumps, roots);
+    return table(sums, jumps, roots, [&](std::size_t p, const Modes& K, const Vector& ahead) {
+      return front::margin_of_crossing(setting_, fronts_[p], K, ahead, *values_of(state.outputs, "traction"),
+                                       [&](LocalIndex c) { return in_cell(p, c, u, loads); });
+    });
   }
 
  private:
@@ -279,15 +280,7 @@ class StressIntensity final : public estimate::TableOfStates {
     const auto& rule = dim == 2 ? rules_.of_edge(tips, 6) : rules_.of(mesh::face_shape(shape), tips, 6);
     Real whole = 0;
     for (const auto& point : rule) whole += point.weight;
-    for (const auto& point : rule) visit(point.weight / whole * face.area, place(corners, point.xi));
-  }
-  /// Point of a face at reference coordinates.
-  static Vector place(const mesh::FaceCorners& corners, const std::array<Real, 3>& xi) {
-    const auto& x = corners.x;
-    if (corners.n == 2) return x[0] + xi[0] * (x[1] - x[0]);
-    if (corners.n == 3) return x[0] + xi[0] * (x[1] - x[0]) + xi[1] * (x[2] - x[0]);
-    const Real a = (1 + xi[0]) / 2, b = (1 + xi[1]) / 2;
-    return (1 - a) * ((1 - b) * x[0] + b * x[3]) + a * ((1 - b) * x[1] + b * x[2]);
+    for (const auto& point : rule) visit(point.weight / whole * face.area, mesh::place(corners, point.xi));
   }
 
   void add_face(std::size_t p, LocalIndex f, const Loads& loads, Real shift, Modes& sum) const {
@@ -366,9 +359,31 @@ class StressIntensity final : public estimate::TableOfStates {
     return means;
   }
 
+  /// Quantities in an owned cell beyond a fracture that a tip meets.
+  front::InCell in_cell(std::size_t p, LocalIndex c, const Fields& u, const Loads& loads) const {
+    Real xi[dim], sigma[dim][dim] = {};
+    std::fill_n(xi, dim, Real(1) / 3);
+    const Point point = at(c, xi, u);
+    const auto& rock = setting_.scene.material_of(mesh_.region_names[mesh_.cell_region[c]]);
+    Matrix s = front::stress(rock.elasticity(point.x), point.H);
+    if (!initial_.empty()) initial_.at(mesh_, c, point.x, sigma);
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        s[i][j] += sigma[i][j] + (i == j && !loads.isotropic.empty() ? loads.isotropic[c] : 0);
+    return {point.x, s, value_of(p, "strength", &Mechanics::Fracture::strength, point.x)};
+  }
+  /// Value of an entry of the fracture of a front point; NaN if it is not given.
+  Real value_of(std::size_t p, const char* name, std::optional<base::Expression> Mechanics::Fracture::*entry,
+                const Vector& x) const {
+    const auto& fracture = mesh_.fracture_names[mesh_.single_fractures[fronts_[p].single].set];
+    const auto& one = setting_.scene.fractures.at(fracture).*entry;
+    const auto place = fmt::format("{}: Sprekk > Fractures > {}", setting_.scene.origin, fracture);
+    return one ? base::value_at(place, name, *one, base::positive(), x) : std::nan("");
+  }
+
   /// Returns K of all modes, Pa m^0.5.
   estimate::StateTable table(const std::vector<Modes>& sums, const std::vector<Modes>& jumps,
-                             const std::vector<Real>& roots) const {
+                             const std::vector<Real>& roots, const auto& crossing) const {
     estimate::StateTable table;
     const auto column = [&](const std::string& name, const char* unit, const auto& of) {
       auto& values = table.columns.emplace_back(estimate::StateTable::Column{name, unit}).values;
@@ -406,20 +421,24 @@ class StressIntensity final : public estimate::TableOfStates {
       return std::sqrt(square);
     });
     column("radius", "m", [&](auto p) { return fronts_[p].radius; });
-    const auto& fractures = setting_.scene.fractures;
-    if (dim == 3 || std::none_of(fractures.begin(), fractures.end(), [](auto& one) { return one.second.toughness; }))
-      return table;
+    const auto any = [&](auto entry) {
+      const auto& all = setting_.scene.fractures;
+      return std::any_of(all.begin(), all.end(), [&](auto& one) { return (one.second.*entry).has_value(); });
+    };
+    if (dim == 3 || !any(&Mechanics::Fracture::toughness)) return table;
     const auto kink = [&](auto p) { return laws::largest_hoop(K[p][0], K[p][1]); };
+    const auto ahead = [&](auto p) {
+      return std::cos(kink(p).angle) * fronts_[p].ahead + std::sin(kink(p).angle) * fronts_[p].normal;
+    };
     column("K_hoop", unit, [&](auto p) { return kink(p).intensity; });
-    column("toughness", unit, [&](auto p) {
-      const auto& name = mesh_.fracture_names[mesh_.single_fractures[fronts_[p].single].set];
-      const auto& one = fractures.at(name).toughness;
-      const auto place = fmt::format("{}: Sprekk > Fractures > {}", setting_.scene.origin, name);
-      return one ? base::value_at(place, "toughness", *one, base::positive(), fronts_[p].x) : std::nan("");
-    });
-    for (int i = 0; i < 2; ++i)
-      column(i == 0 ? "kink_x" : "kink_y", "-", [&](auto p) {
-        return std::cos(kink(p).angle) * fronts_[p].ahead[i] + std::sin(kink(p).angle) * fronts_[p].normal[i];
+    column("toughness", unit,
+           [&](auto p) { return value_of(p, "toughness", &Mechanics::Fracture::toughness, fronts_[p].x); });
+    for (int i = 0; i < 2; ++i) column(i == 0 ? "kink_x" : "kink_y", "-", [&](auto p) { return ahead(p)[i]; });
+    if (any(&Mechanics::Fracture::strength))
+      column("crossing", "-", [&](auto p) {
+        const bool has_it =
+            fronts_[p].radius > 0 && !std::isnan(value_of(p, "strength", &Mechanics::Fracture::strength, fronts_[p].x));
+        return has_it ? crossing(p, K[p], ahead(p)) : std::nan("");
       });
     return table;
   }

@@ -30,7 +30,8 @@ namespace sprekk::physics {
 /// sqrt(r/(2 pi)). error = |K - K of the second estimate|, over all modes.
 ///
 /// With a "toughness", in 2D: columns K_hoop and kink_x, kink_y, the intensity of the largest hoop stress and its
-/// direction (laws::largest_hoop()), and `toughness` at the tip.
+/// direction (laws::largest_hoop()), and `toughness` at the tip. With a "strength": `crossing`, see
+/// front::margin_of_crossing().
 ///
 /// Throws an Error for periodic meshes, and after changes of elastic constants or a backfill. Collective.
 std::unique_ptr<estimate::TableOfStates> make_stress_intensity(const Setting& setting, assembly::System& system);

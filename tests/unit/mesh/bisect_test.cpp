@@ -334,6 +334,22 @@ TEST(Extension, TurnsAboutItsBeginning) {
   }
 }
 
+/// An extension turns near a fracture ahead, which remains where it is.
+TEST(Extension, TurnsBeforeAnotherFracture) {
+  auto box = with_crack();
+  box.fractures["wall"] = fracture({7, 2}, {7, 6});
+  Bisection bisection(make_box(box));
+  std::vector<GlobalIndex> parent(bisection.n_cells());
+  std::iota(parent.begin(), parent.end(), 0);
+  ASSERT_EQ(bisection.extend({{5, 4}, {1, 0}, 1, 0.25}, parent), Extended::tip);
+  const auto wall = sizes_of(bisection.mesh()).at("minus wall");
+  ASSERT_TRUE(bisection.turn({{5, 4}, {6, 4}, 0.1}));
+  const auto mesh = bisection.mesh();
+  EXPECT_GE(flattest(mesh), 0.15);
+  EXPECT_EQ(sizes_of(mesh).at("minus wall"), wall);
+  EXPECT_NEAR(std::abs(sizes_of(mesh).at("minus crack")[1]), std::sin(0.1), 1e-12);
+}
+
 /// Paths of seven extensions with bends and turns, in both directions.
 TEST(Extension, FollowsCurvedPaths) {
   for (int path = 0; path < 24; ++path) {
@@ -404,6 +420,55 @@ TEST(Extension, EndsAtAnotherFracture) {
       EXPECT_NEAR(std::abs(sizes.at("minus crack")[1]), std::abs(slope), 0.75 * length / 3 + 1e-12);
       EXPECT_EQ(n_tips(mesh), 3);
     }
+}
+
+/// An extension that crosses another fracture continues from one of its nodes. The fracture is complete and has four
+/// sides there.
+TEST(Extension, CrossesAnotherFracture) {
+  for (const Real lean : {-1.0, 0.0, 0.6, 1.0})
+    for (const Real length : {0.8, 1.2}) {
+      auto box = with_crack();
+      box.fractures["wall"] = fracture({6, 2}, {6, 6});
+      auto leaning = make_box(box);
+      for (GlobalIndex n = 0; n < leaning.n_nodes(); ++n)
+        leaning.coordinates[2 * n] += lean * (point(leaning, n)[1] - 4);
+      Bisection bisection(leaning);
+      const auto before = sizes_of(bisection.mesh());
+      std::vector<GlobalIndex> parent(bisection.n_cells());
+      std::iota(parent.begin(), parent.end(), 0);
+      const auto made = bisection.extend({{5, 4}, {1, 0}, length, length / 3, 0.7}, parent);
+      ASSERT_EQ(made, Extended::crossing) << lean << " " << length;
+      const auto mesh = bisection.mesh();
+      EXPECT_EQ(mesh.single_fractures[made.met].name, "wall");
+      EXPECT_NEAR(made.begin[0] - 6 - lean * (made.begin[1] - 4), 0, 1e-12);
+      EXPECT_NEAR(std::hypot(made.begin[0] - 6, made.begin[1] - 4), 0, 1.1 * length / 3);
+      EXPECT_NEAR(made.end[0], made.begin[0] + 0.7, 1e-12);
+      EXPECT_NEAR(made.end[1], made.begin[1], 1e-12);
+      expect_conforming(mesh);
+      EXPECT_GE(flattest(mesh), 0.15);
+      const auto sizes = sizes_of(mesh);
+      EXPECT_NEAR(sizes.at("minus wall")[0], before.at("minus wall")[0], 1e-12);
+      EXPECT_NEAR(sizes.at("minus crack")[0], 2.7 + std::hypot(made.begin[0] - 5, made.begin[1] - 4), 1e-12);
+      EXPECT_EQ(n_tips(mesh), 4);
+      GlobalIndex copies = 0;
+      for (GlobalIndex n = 0; n < mesh.n_nodes(); ++n) {
+        const auto x = point(mesh, n);
+        copies += std::hypot(x[0] - made.begin[0], x[1] - made.begin[1]) < 1e-12;
+      }
+      EXPECT_EQ(copies, 4);
+    }
+}
+
+/// Without room beyond, the extension ends at the other fracture.
+TEST(Extension, EndsAtAFractureBeforeAnother) {
+  auto box = with_crack();
+  box.fractures["wall"] = fracture({6, 2}, {6, 6});
+  box.fractures["second"] = fracture({7, 2}, {7, 6});
+  Bisection bisection(make_box(box));
+  std::vector<GlobalIndex> parent(bisection.n_cells());
+  std::iota(parent.begin(), parent.end(), 0);
+  EXPECT_EQ(bisection.extend({{5, 4}, {1, 0}, 1, 0.3, 0.7}, parent), Extended::junction);
+  EXPECT_NEAR(sizes_of(bisection.mesh()).at("minus crack")[0], 3, 0.1);
 }
 
 /// Two tips of one round of growth that meet: the second one has no tip any more.

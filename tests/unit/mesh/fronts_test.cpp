@@ -6,6 +6,8 @@
 #include <cmath>
 #include <functional>
 
+#include "base/over_ranks.hpp"
+#include "mesh/ahead.hpp"
 #include "mesh/distribute.hpp"
 #include "meshes.hpp"
 
@@ -14,12 +16,16 @@ namespace {
 
 using Rock = std::function<std::array<Real, 3>(const Vector& centre)>;
 
-std::vector<FrontPoint> fronts_of(const BoxMesh& box, const Rock& rock) {
+RCP<const Mesh> scattered(const BoxMesh& box) {
   const auto global = make_box(box);
   const int ranks = Tpetra::getDefaultComm()->getSize();
   std::vector<int> part(global.n_cells());
   for (std::size_t c = 0; c < part.size(); ++c) part[c] = static_cast<int>(c) % ranks;
-  const auto mesh = distribute(global, part, Tpetra::getDefaultComm());
+  return distribute(global, part, Tpetra::getDefaultComm());
+}
+
+std::vector<FrontPoint> fronts_of(const BoxMesh& box, const Rock& rock) {
+  const auto mesh = scattered(box);
   return find_fronts(*mesh, std::vector<char>(mesh->fracture_names.size(), 1),
                      [&](LocalIndex c) { return rock(cell_centre(*mesh, c)); });
 }
@@ -44,6 +50,39 @@ TEST(Fronts, OfALineInTheRockAreItsEndsWithFrames) {
       EXPECT_DOUBLE_EQ(point.length, 1);
     }
   }
+}
+
+TEST(Ahead, IsTheFirstOtherFractureOnTheLine) {
+  auto box = unit_steps("triangle", {20, 20});
+  box.fractures["a"] = fracture({2, 10}, {10, 10});
+  box.fractures["far"] = fracture({17, 2}, {17, 18});
+  box.fractures["near"] = fracture({14, 5}, {14, 15});
+  const auto mesh = scattered(box);
+  const auto name = [&](const FaceAhead& one) { return mesh->single_fractures[one.single].name; };
+  const auto sum = [&](Real here) { return base::sum_over_ranks(*mesh->comm, here); };
+  for (const Real slope : {-0.1, 0.0, 0.1}) {
+    const auto found = first_face_ahead(*mesh, {10, 10, 0}, {1 / std::hypot(1, slope), slope / std::hypot(1, slope), 0},
+                                        fronts_of(box, uniform).at(0).single);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(name(*found), "near");
+    expect_equal(found->along, {0, 1, 0});
+    EXPECT_EQ(sum(found->face >= 0), 1);
+    EXPECT_EQ(sum(found->cell >= 0), 1);
+    if (found->face >= 0) {
+      EXPECT_NEAR(mesh->fracture_faces[found->face].centre[1], 10 + 4 * slope, 0.5);
+    }
+    if (found->cell >= 0) {
+      EXPECT_NEAR(cell_centre(*mesh, found->cell)[0], 14.33, 0.01);
+    }
+  }
+  const auto back = first_face_ahead(*mesh, {18, 10.3, 0}, {-1, 0, 0}, -1);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(name(*back), "far");
+  expect_equal(back->along, {0, -1, 0});
+  if (back->cell >= 0) {
+    EXPECT_NEAR(cell_centre(*mesh, back->cell)[0], 16.67, 0.01);
+  }
+  EXPECT_FALSE(first_face_ahead(*mesh, {10, 10, 0}, {0, 1, 0}, -1));
 }
 
 TEST(Fronts, DomainsEndAtOtherRockAndOtherFractures) {
