@@ -123,14 +123,17 @@ std::vector<FloatingPieces::Form> FloatingPieces::slip_form(const std::vector<Mo
 
 /// Computes generalised eigenvectors of slip form and distance form, group by group. In their coordinates both forms
 /// are diagonal. The weight of vectors with slip is their share of the slip form. The weight of others is very small,
-/// so that they yield if an obstacle involves both kinds.
+/// so that they yield if an obstacle involves both kinds. Slip below 1e-6 of the motion is round-off of the free
+/// motions: if it counted, the least slip would require an endless motion.
 FloatingPieces::Places FloatingPieces::places(const fields::Vector& displacement,
                                               const std::vector<Slide>& slides) const {
   constexpr Real little = 1e-8;
   const auto motions = motions_of_groups();
   auto distance = distance_form(motions, displacement), slip = slip_form(motions, slides);
   std::vector<std::vector<Real>> share;  // [group][eigenvector] share of the slip form
-  Real largest = 0, size = 0;
+  Real largest = 0, size = 0, area = 0;
+  for (const auto& slide : slides) area += is_beside(slide.face) ? mesh_->fracture_faces[slide.face].area : 0;
+  area = base::sum_over_ranks(*mesh_->comm, area);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const int n = static_cast<int>(motions[g].size()), n_work = 64 * n;
     for (int r = 0; r < n; ++r) size = std::max(size, distance[g].matrix[r * n + r]);
@@ -142,10 +145,11 @@ FloatingPieces::Places FloatingPieces::places(const fields::Vector& displacement
     largest = std::max(largest, values[n - 1]);
     share.push_back(values);
   }
+  if (largest * size <= negligible * negligible * area) largest = 0;
   Places places{std::vector<RigidRow>(floating_.size(), RigidRow{}), {}, std::sqrt((largest > 0 ? largest : 1) * size)};
   for (std::size_t g = 0; g < groups_.size(); ++g)
     for (std::size_t k = 0; k < motions[g].size(); ++k) {
-      const bool slips = share[g][k] > negligible * negligible * largest;
+      const bool slips = largest > 0 && share[g][k] > negligible * negligible * largest;
       const auto& vector = slips ? slip[g].vector : distance[g].vector;
       const Real* x = &slip[g].matrix[k * vector.size()];
       const Real there = -std::inner_product(vector.begin(), vector.end(), x, Real(0)) / (slips ? share[g][k] : 1);

@@ -320,7 +320,7 @@ class Balances:
             parts = [k.capacity * k.volume * self.rates(factor, now.T, old.T, older and older.T),
                      k.face_capacity * self.carried(factor, now, old, older)]
             wells = [w["heat"] - self.c * w["rate"] * reference for w in step.get("wells", {}).values()] if self.flows else []
-            unknown, friction = 0.0, self.friction(number, state, factor)
+            unknown, friction = 0.0, self.friction(number, factor)
             if self.flows:
                 cells, faces, rock = self.fluid_rates(factor, now, old, older)
                 of_rock, of_faces = self.sources(state.time)
@@ -347,13 +347,19 @@ class Balances:
             parts.append(self.c * flow * (held.pop() - reference) if held else 0.0)
         return parts
 
-    def friction(self, number, state, factor):
-        """Frictional power minus the work rate of dilation against the normal traction, W."""
-        if self.run.text("Heat", "heat of friction") != "true" or state.fractures is None or self.rigid:
+    def friction(self, number, factor):
+        """Rate of the work of friction minus that of dilation against the normal traction, W. As in the rows of the
+        program, the work is differentiated as the stored energy, so that BDF2 conserves their difference."""
+        if self.run.text("Heat", "heat of friction") != "true" or self.run.states[number].fractures is None or self.rigid:
             return 0.0
-        now, before = self.plastic(state), self.plastic(self.run.states[number - 1] if number else None)
-        dt_inverse = factor[0] if factor[1] == 0 else 1 / (state.time - self.run.states[number - 1].time)
-        return float((self.k.area * (state.fractures.cell_data["traction local"] * (now - before)).sum(axis=1)).sum()) * dt_inverse
+        nu, beta = factor
+        return nu * self.friction_work(number) - (beta * self.friction_work(number - 1) if beta else 0.0)
+
+    def friction_work(self, number):
+        """Work of friction minus that of dilation during a step, J."""
+        now, before = (self.plastic(self.run.states[k] if k >= 0 else None) for k in (number, number - 1))
+        traction = self.run.states[number].fractures.cell_data["traction local"]
+        return float((self.k.area * (traction * (now - before)).sum(axis=1)).sum())
 
     def plastic(self, state):
         """[face, 3] Plastic jump; its normal component is the dilation."""
