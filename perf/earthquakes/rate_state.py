@@ -138,11 +138,12 @@ def published(row, name):
 
 
 def slip_at(run, t):
-    """Distances from the centre, slip and lengths of the faces at a time."""
+    """Distances from the centre in increasing order, slip and lengths of the faces at a time."""
     file = next(file for at, file in read.written_steps(run.directory, "fractures") if abs(at / t - 1) < 1e-9)
     faces = read.segments(read.grid(file))
     ends = np.array([corners[:2, 0] for corners in faces.corners()])
-    return ends.mean(axis=1), faces.cell_data["slip"], np.abs(np.diff(ends)[:, 0])
+    order = np.argsort(ends.mean(axis=1))
+    return ends.mean(axis=1)[order], faces.cell_data["slip"][order], np.abs(np.diff(ends)[order, 0])
 
 
 def deviation(slip, exact, length=1):
