@@ -10,13 +10,13 @@ import numpy as np
 
 from perf.common import options as common
 from perf.common import program, table
-from perf.earthquakes import fluid_driven, rate_state, rupture, sequence
+from perf.earthquakes import fluid_driven, rate_state, rupture, sequence, slab
 
 BOUNDS = {"failures": 0, "worst_error": 0.03, "newton_median": 4, "steps_ratio": 2}
 QUICK_BOUNDS = {**BOUNDS, "steps_ratio": 10}  # a guard: spring sliders miss the target
 FORMATS = {"worst_error": ".4f", "newton_median": ".3g", "steps_ratio": ".2f"}
 COLUMNS = {"row": "", "faces": "d", "front": ".2%", "slip": ".2%", "first event": ".2%", "onset": ".2%", "period": ".2%", "error": ".2%", "steps": "d", "rejected": "d", "Newton": ".3g",
-           "most": "d", "Krylov": ".1f", "set-ups": ".2f", "cost": ".1f", "reference": "d", "ratio": ".2f", "seconds": ".1f", "onsets": ""}
+           "most": "d", "Krylov": ".1f", "set-ups": ".2f", "cost": ".1f", "reference": "d", "ratio": ".2f", "seconds": ".1f", "onsets": "", "places": ""}
 
 
 @dataclass
@@ -34,15 +34,16 @@ class Row:
     setups: float = None    # factorisations or hierarchies per step
     cost: float = None      # of a step, over that of a linear solve and a residual
     onsets: str = None      # years, with errors
+    places: str = None      # stations and times of large errors
 
     @classmethod
-    def of_run(cls, name, run, errors, reference=None, onsets=None):
+    def of_run(cls, name, run, errors, reference=None, onsets=None, places=None):
         steps = run.steps
         timing = run.results["timing"]
         unit = sum(timing[phase]["cpu_seconds"] / timing[phase]["count"] for phase in ("linear_solve", "residual"))
         return cls(name, errors, len(steps), sum(step.get("rejected", 0) for step in steps), run.seconds, run.results["mesh"]["fracture_faces"],
                    run.newton, sum(step["linear_iterations"] for step in steps) / len(steps), reference,
-                   timing["set-up_of_linear_solver"]["count"] / len(steps), timing["time_steps"]["cpu_seconds"] / len(steps) / unit, onsets)
+                   timing["set-up_of_linear_solver"]["count"] / len(steps), timing["time_steps"]["cpu_seconds"] / len(steps) / unit, onsets, places)
 
     @property
     def error(self):
@@ -56,13 +57,14 @@ class Row:
         median, most = (float(np.median(self.newton)), max(self.newton)) if self.newton else (None, None)
         errors = [self.errors.get(column) for column in ("front", "slip", "first event", "onset", "period")]
         return [self.name, self.faces, *errors, self.error, self.steps, self.rejected, median, most, self.krylov, self.setups, self.cost,
-                self.reference, self.ratio, self.seconds, self.onsets]
+                self.reference, self.ratio, self.seconds, self.onsets, self.places]
 
 
 def cases(options):
     """Yields (name, function that returns a Row)."""
     yield from rate_state.cases(options, Row)
     yield from sequence.cases(options, Row)
+    yield from slab.cases(options, Row)
     yield from fluid_driven.cases(options, Row.of_run)
     yield from rupture.cases(options, Row.of_run)
 

@@ -1,5 +1,5 @@
-"""Explicit quasi-dynamic solution of a plane fault in an elastic half-plane y < 0 in plane strain, by the boundary
-integral method with constant slip in each cell. The cells and the loading are those of problem BP3-QD.
+"""Explicit quasi-dynamic solution of a plane fault in an elastic half-plane y < 0 in plane strain or antiplane strain, by
+the boundary integral method with constant slip in each cell. Cells and loading are those of problems BP1-QD and BP3-QD.
 
 An edge dislocation at w in the whole plane has the complex potentials (Muskhelishvili 1953)
     phi_0 = A ln(z - w),  psi_0 = conj(A) ln(z - w) - A conj(w)/(z - w),  A = G b/(i pi (kappa + 1)),  kappa = 3 - 4 nu
@@ -48,15 +48,22 @@ def tractions(points, places, dip, modulus, nu):
     return tuple(of[:, :-1] - of[:, 1:] for of in (tau, sigma))
 
 
-class Thrust:
-    """Fault that dips by `dip` and reaches the surface. `points` are the distances of the ends of its cells from the
-    surface; below, it slips at the plate rate. Unknowns: slip and psi of the cells."""
+def antiplane(points, places, modulus):
+    """The same for slip along the strike of a vertical fault. A screw dislocation at w has the stress G/(2 pi (z - w)),
+    and a mirror image above the surface."""
+    z, w = np.meshgrid(places, points, indexing="ij")
+    of = modulus / (2 * np.pi) * (1 / (z - w) - 1 / (z + w))
+    return of[:, 1:] - of[:, :-1], np.zeros((1, len(points) - 1))
 
-    def __init__(self, friction, points, dip, modulus, nu, shear, N, rate):
+
+class Fault:
+    """Fault that reaches the surface and slips at the plate rate below its cells. `of_shear` and `of_normal` are the
+    tractions of slip by 1 in each cell. Unknowns: slip and psi of the cells."""
+
+    def __init__(self, friction, of_shear, of_normal, shear, N, rate):
         self.friction, self.shear, self.N, self.rate = friction, shear, N, rate
-        centres = (points[1:] + points[:-1]) / 2
-        self.of_shear, self.of_normal = tractions(points, centres, dip, modulus, nu)
-        self.n = n = len(centres)
+        self.of_shear, self.of_normal = of_shear, of_normal
+        self.n = n = of_shear.shape[1]
         self.start = np.concatenate([np.zeros(n), friction.state(shear, N, rate) + np.zeros(n)])
         self.scale = np.concatenate([np.full(n, friction.L), np.full(n, friction.b)])
 
@@ -69,15 +76,30 @@ class Thrust:
         return np.concatenate([V, self.friction.state_rate(V, y[self.n:])])
 
 
-def bp3(size=100.0, dip=np.pi / 3, growth=1.01):
-    """Problem BP3-QD, thrust, with cells of this size down to 18 km and growing ones below. Creep below
-    18 km loads the locked part: with cells that grow by 1.1, all events are too early."""
-    points = np.linspace(0, STRENGTHENING, round(STRENGTHENING / size) + 1)
-    steps = size * growth ** np.arange(1, 1 + round(np.log(1 + (LOCKED - STRENGTHENING) / size * (growth - 1)) / np.log(growth)))
-    deep = STRENGTHENING + np.cumsum(steps) * (LOCKED - STRENGTHENING) / np.sum(steps)
-    points = np.concatenate([points, deep])
+def cells_to(depth, size, growth):
+    """Ends of cells of this size down to 18 km, which grow below and end at `depth`. Creep below 18 km loads the locked
+    part: with cells that grow by 1.1, all events are too early."""
+    steps = size * growth ** np.arange(1, 1 + round(np.log(1 + (depth - STRENGTHENING) / size * (growth - 1)) / np.log(growth)))
+    deep = STRENGTHENING + np.cumsum(steps) * (depth - STRENGTHENING) / np.sum(steps)
+    return np.concatenate([np.linspace(0, STRENGTHENING, round(STRENGTHENING / size) + 1), deep])
+
+
+def locked(points, of_shear, of_normal, L=0.008):
+    """The fault of problems BP1-QD and BP3-QD."""
     a = np.interp((points[1:] + points[:-1]) / 2, [TURN, STRENGTHENING], [WEAK, STRONG])
-    friction = Friction(a, b=0.015, L=0.008, damping=SHEAR_MODULUS / (2 * SHEAR_SPEED))
+    friction = Friction(a, b=0.015, L=L, damping=SHEAR_MODULUS / (2 * SHEAR_SPEED))
     steady = Friction(STRONG, friction.b, friction.L, friction.damping)
     shear = steady.strength(COMPRESSION, PLATE_RATE, steady.steady_state(PLATE_RATE))
-    return Thrust(friction, points, dip, SHEAR_MODULUS, POISSON, shear, COMPRESSION, PLATE_RATE)
+    return Fault(friction, of_shear, of_normal, shear, COMPRESSION, PLATE_RATE)
+
+
+def bp1(size=100.0, growth=1.01, L=0.008):
+    """Problem BP1-QD, a vertical fault in antiplane strain, with this state evolution distance."""
+    points = cells_to(LOCKED, size, growth)
+    return locked(points, *antiplane(points, (points[1:] + points[:-1]) / 2, SHEAR_MODULUS), L=L)
+
+
+def bp3(size=100.0, dip=np.pi / 3, growth=1.01):
+    """Problem BP3-QD, thrust."""
+    points = cells_to(LOCKED, size, growth)
+    return locked(points, *tractions(points, (points[1:] + points[:-1]) / 2, dip, SHEAR_MODULUS, POISSON))

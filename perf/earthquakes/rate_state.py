@@ -16,6 +16,7 @@ SLIDER_SCENE, STRIP_SCENE, INJECTION_SCENE = "point/spring_slider.xml", "earthqu
 SLIDER_END, TOLERANCE = 1.1e6, 1e-3  # s, tolerance of the time steps
 LADDER = 10.0 ** -np.arange(1, 9)  # tolerances of the explicit method
 TIMES = (8.64e6, 1.2e7, 3.15e7, 6.3e7)  # s, end of injection, and later
+STATIONS = np.array([0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 8, 10]) * 1e3  # m, from the centre
 # at the centre, by CYCLAPS (Dublanchet), from the platform of the code comparison of SCEC
 PUBLISHED = {"time": 63066887.0, "slip": 0.209265, "rate": 10**-10.27701, "traction": 28.07028e6}
 
@@ -104,16 +105,19 @@ def injection(options, row, name):
     entries = (f"Mesh file.refinements={0 if options.quick else 1}", f"Time.schedule={{{', '.join(f'{t:g}' for t in times)}}}", "Output.vtu=true", *options.set)
     run = program.succeeded(options.binary, INJECTION_SCENE, options.output / "injection", entries)
     fine, exact = explicit_injection(size / 4, 1e-6, times)
-    errors = []
+    errors, places = [], []
     for k, t in enumerate(times):
         x, slip, length = slip_at(run, t)
-        errors.append(deviation(slip, np.interp(x, fine.z, exact.states[k][:fine.n]), length))
+        exact_slip = exact.states[k][:fine.n]
+        errors.append(deviation(slip, np.interp(x, fine.z, exact_slip), length))
+        relative = np.interp(STATIONS, x, slip) / np.interp(STATIONS, fine.z, exact_slip) - 1
+        places += [f"{z / 1000:g} km, {t:g} s: {error:+.1%}" for z, error in zip(STATIONS, relative) if abs(error) > 0.01]
     line, converged = explicit_injection(size, LADDER[-1], times)
 
     def error_of(tolerance):
         found = explicit_injection(size, tolerance, times)[1]
         return max(deviation(one[:line.n], two[:line.n]) for one, two in zip(found.states, converged.states)), found.steps + found.rejected
-    return row.of_run(name, run, {"slip": max(errors)}, steps_at(max(errors), error_of))
+    return row.of_run(name, run, {"slip": max(errors)}, steps_at(max(errors), error_of), places="; ".join(places))
 
 
 @cache
@@ -134,11 +138,12 @@ def published(row, name):
 
 
 def slip_at(run, t):
-    """Distances from the centre, slip and lengths of the faces at a time."""
+    """Distances from the centre in increasing order, slip and lengths of the faces at a time."""
     file = next(file for at, file in read.written_steps(run.directory, "fractures") if abs(at / t - 1) < 1e-9)
     faces = read.segments(read.grid(file))
     ends = np.array([corners[:2, 0] for corners in faces.corners()])
-    return ends.mean(axis=1), faces.cell_data["slip"], np.abs(np.diff(ends)[:, 0])
+    order = np.argsort(ends.mean(axis=1))
+    return ends.mean(axis=1)[order], faces.cell_data["slip"][order], np.abs(np.diff(ends)[order, 0])
 
 
 def deviation(slip, exact, length=1):
