@@ -59,6 +59,25 @@ TEST(LinearSolvers, AFineLevelKeepsIterationsLow) {
   }
 }
 
+/// In 2D the second level of nodes is solved directly, which saves iterations.
+TEST(LinearSolvers, TheSecondLevelIn2DIsSolvedDirectly) {
+  const std::string name = "verification/crossing_2d.xml", mesh = "Mesh.cells={80, 80}";
+  const auto direct = run(name, {mesh, "Solver.Linear solver.type=direct"}, 1),
+             usual = run(name, {mesh, "Solver.Linear solver.type=iterative"}, 1),
+             small = run(name,
+                         {mesh, "Solver.Linear solver.type=iterative",
+                          "Solver.Blocks.displacement.multigrid.coarsest level=300"},
+                         1);
+  for (const auto* r : {&direct, &usual, &small}) ASSERT_TRUE(r->report.converged) << r->report.reason;
+  for (const int block : {0, 2}) EXPECT_LT(difference_of(direct, usual, block), 1e-8) << block;
+  const auto levels = [](const auto& r) {
+    return r.model->newton().linear().solver().solver->costs().back().n_unknowns.size();
+  };
+  EXPECT_EQ(levels(usual), 2u);
+  EXPECT_GT(levels(small), 2u);
+  EXPECT_LT(solve::iterations(usual.report.linear_solves), solve::iterations(small.report.linear_solves));
+}
+
 /// In 2D the corners of face pressures are one level, solved directly, also above the limit in 3D.
 TEST(LinearSolvers, CornersIn2DAreSolvedDirectly) {
   constexpr GlobalIndex limit_in_3d = 4000;
