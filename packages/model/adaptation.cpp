@@ -141,10 +141,13 @@ std::string Adaptation::limit(const Accuracy& accuracy, const Comm& comm) const 
   return "";
 }
 
+Real Adaptation::elapsed() const {
+  return earlier_seconds_ + std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
+}
+
 void Adaptation::record(const Model& model, const estimate::Goals& goals, Real begin) {
   const auto& mesh = model.mesh();
-  const Real here = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin_).count();
-  runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, here), begin, goals.estimates()});
+  runs_.push_back({mesh.n_global_cells, base::max_over_ranks(*mesh.comm, elapsed()), begin, goals.estimates()});
   dim_ = mesh.dim();
   order_ = goals.any_balance() ? 1 : mesh::order(mesh.shape);
 }
@@ -234,19 +237,43 @@ void Adaptation::refine(const Comm& comm) {
 }
 
 json Adaptation::summary() const {
-  json result = {{"reached", reached()}, {"ended", why_}, {"quantities", json::object()}, {"meshes", json::array()}};
+  json result = {{"reached", reached()}, {"ended", why_}, {"quantities", json::object()}, {"meshes", meshes()}};
   for (const auto& verdict : verdicts_)
     result["quantities"][verdict.name] = {
         {"title", verdict.title},         {"unit", verdict.unit},           {"value", verdict.value},
         {"error", number(verdict.error)}, {"requested", verdict.requested}, {"space", number(verdict.space)},
         {"time", number(verdict.time)},   {"reached", verdict.reached},     {"line", verdict.line()}};
+  return result;
+}
+
+json Adaptation::meshes() const {
+  json result = json::array();
   for (const auto& run : runs_) {
     json one = {{"cells", run.cells}, {"seconds", run.seconds}, {"quantities", json::object()}};
     for (const auto& [name, estimate] : run.estimates)
       one["quantities"][name] = {{"value", estimate.value}, {"error", number(estimate.error)}};
-    result["meshes"].push_back(one);
+    result.push_back(one);
   }
   return result;
+}
+
+json Adaptation::memory() const {
+  json begins = json::array();
+  for (const auto& run : runs_) begins.push_back(run.begin);
+  return {{"seconds", elapsed()}, {"begins", begins}, {"meshes", meshes()}};
+}
+
+void Adaptation::resume(const json& memory) {
+  earlier_seconds_ = memory.at("seconds");
+  const auto& meshes = memory.at("meshes");
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    runs_.push_back({meshes[k].at("cells"), meshes[k].at("seconds"), memory.at("begins")[k], {}});
+    for (const auto& [name, one] : meshes[k].at("quantities").items()) {
+      const auto& error = one.at("error");
+      runs_.back().estimates[name] = {one.at("value"),
+                                      error.is_null() ? std::numeric_limits<Real>::infinity() : error.get<Real>()};
+    }
+  }
 }
 
 }  // namespace sprekk::model

@@ -50,6 +50,10 @@ class Adaptation {
   const std::vector<Verdict>& verdicts() const { return verdicts_; }
   /// Entry "accuracy" of results.json. Stored data.
   nlohmann::json summary() const;
+  /// Meshes so far and the seconds since the first run began, for a checkpoint. Stored data.
+  nlohmann::json memory() const;
+  /// Continues with the memory of an earlier run, the same on all ranks. Call it before the first step.
+  void resume(const nlohmann::json& memory);
 
   /// Bisects the cells selected by judge(). Call it after the last use of the model.
   void refine(const Comm& comm);
@@ -63,6 +67,8 @@ class Adaptation {
     std::map<std::string, estimate::Estimate> estimates;
   };
 
+  Real elapsed() const;
+  nlohmann::json meshes() const;
   void record(const Model& model, const estimate::Goals& goals, Real begin);
   void choose_steps(Scene scene, RCP<const Comm> comm);
   Real space_error(const estimate::Estimate& now, const estimate::Estimate& before) const;
@@ -73,6 +79,7 @@ class Adaptation {
 
   std::shared_ptr<std::optional<mesh::Bisection>> bisection_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Real earlier_seconds_ = 0;                 // of the runs before a restart
   std::optional<Time> time_;                 // chosen time steps
   std::map<std::string, Real> time_errors_;  // by quantity; empty if a step failed
   std::vector<Run> runs_;

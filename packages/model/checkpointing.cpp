@@ -4,8 +4,13 @@
 
 namespace sprekk::model {
 
-Checkpointing::Checkpointing(Model& model, Steps& steps, const std::string& directory, base::Log& log)
-    : model_(model), steps_(steps), log_(log), checkpoints_(model.system().comm(), directory + "/checkpoints") {}
+Checkpointing::Checkpointing(Model& model, Steps& steps, Adaptation& adaptation, const std::string& directory,
+                             base::Log& log)
+    : model_(model),
+      steps_(steps),
+      adaptation_(adaptation),
+      log_(log),
+      checkpoints_(model.system().comm(), directory + "/checkpoints") {}
 
 EarlierResults Checkpointing::restore() {
   std::vector<std::string> damage;
@@ -14,6 +19,7 @@ EarlierResults Checkpointing::restore() {
   steps_.go_to_stage_at(checkpoint.content.at("time"), checkpoint.content.value("begins stage", false));
   model_.restore(checkpoint);
   steps_.resume(checkpoint.content.value("steps", nlohmann::json()));
+  if (checkpoint.content.contains("accuracy")) adaptation_.resume(checkpoint.content["accuracy"]);
   log_.info("going on from t = {}", model_.time());
   n_saved_steps_ = static_cast<int>(checkpoint.journal.size());
   return {std::move(checkpoint.journal),   checkpoint.content.at("restarts"),
@@ -47,6 +53,7 @@ void Checkpointing::write(const Results& results) {
   checkpoint.content["steps"] = steps_.memory();
   checkpoint.content["stages"] = results.stages();
   checkpoint.content["common"] = results.common_entries();
+  if (model_.scene().accuracy) checkpoint.content["accuracy"] = adaptation_.memory();
   checkpoint.content["begins stage"] = steps_.is_at_begin_of_stage();
   checkpoint.journal = results.journal(n_saved_steps_);
   checkpoint.vectors.merge(results.faces());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/log.hpp"
+#include "model/adaptation.hpp"
 #include "model/results.hpp"
 #include "model/steps.hpp"
 
@@ -9,10 +10,10 @@
 
 namespace sprekk::model {
 
-/// Checkpoints of a model with its results, in DIRECTORY/checkpoints. All members are collective.
+/// Checkpoints of a model with its results and refined meshes, in DIRECTORY/checkpoints. All members are collective.
 class Checkpointing {
  public:
-  Checkpointing(Model& model, Steps& steps, const std::string& directory, base::Log& log);
+  Checkpointing(Model& model, Steps& steps, Adaptation& adaptation, const std::string& directory, base::Log& log);
 
   /// Removes the checkpoints of a previous run.
   void remove_checkpoints() { checkpoints_.clear(); }
@@ -32,6 +33,7 @@ class Checkpointing {
 
   Model& model_;
   Steps& steps_;
+  Adaptation& adaptation_;
   base::Log& log_;
   io::Checkpoints checkpoints_;
   int n_saved_steps_ = 0;

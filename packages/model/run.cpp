@@ -305,7 +305,7 @@ Ending run_once(const RunOptions& options, const std::string& directory, const s
   if (adaptation.is_first())
     for (const auto& warning : model->warnings()) log.warning("{}", warning);
   Steps steps(*model);
-  Checkpointing checkpoints(*model, steps, directory, log);
+  Checkpointing checkpoints(*model, steps, adaptation, directory, log);
   if (!options.restart) checkpoints.remove_checkpoints();
   const Scene as_read = model->scene();  // without the changes of stages
   std::optional<EarlierResults> earlier;

@@ -76,7 +76,7 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
   shares_ = base::on_all_ranks(*map_->getComm(), levels_.front().A.value.data() == matrix->numbers().value.data());
   levels_.front().degree = std::max(options.degree, options_.finest_degree);
   Real strong = options.strong;
-  while (n_nodes(levels_.back().A) * levels_.back().A.height > options.coarse_size) {
+  while (n_nodes(levels_.back().A) * levels_.back().A.height > options.direct_limit(levels_.size() - 1)) {
     const auto& A = levels_.back().A;
     if (!modes.is_null())
       levels_.back().degree = degree_for(leave_out_far_contact(A.graph, nodes), levels_.back().degree);
@@ -117,7 +117,7 @@ Multigrid::Multigrid(const RCP<const Matrix>& matrix, Nodes nodes, int n_compone
 std::unique_ptr<FewerRanks> Multigrid::on_fewer_ranks(const Galerkin& galerkin, Nodes& nodes) const {
   const auto& coarse = galerkin.coarse();
   const auto numbers = base::sum_over_ranks(*map_->getComm(), static_cast<double>(coarse.value.extent(0)));
-  const bool is_last = n_nodes(coarse) * coarse.height <= options_.coarse_size;
+  const bool is_last = n_nodes(coarse) * coarse.height <= options_.direct_limit(levels_.size());
   const double n_ranks = n_ranks_of(coarse.graph), maximum = std::min(numbers / options_.minimum_per_rank,
                                                                       static_cast<double>(n_nodes(coarse)) / min_nodes);
   const double wanted = is_last ? 1 : maximum / 2;

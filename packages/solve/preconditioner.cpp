@@ -32,7 +32,8 @@ class NodeMultigrid : public Preconditioner {
       : Preconditioner("multigrid", blocks.front().name) {
     const auto& first = blocks.front();
     const bool at_corners = first.n_components == 1 && !first.interpolation.is_null();
-    options_ = at_corners ? options.of_corners(dimension(first)) : options.of_nodes();
+    const int dim = first.coordinates.is_null() ? 3 : dimension(first);
+    options_ = at_corners ? options.of_corners(dim) : options.of_nodes(dim);
     for (std::size_t b = 1; b < blocks.size(); ++b) enriching_.push_back(blocks[b].name);
     if (!enriching_.empty()) options_.finest_degree = degree_with_enrichment;
   }
@@ -45,7 +46,7 @@ class NodeMultigrid : public Preconditioner {
     list.set("type", "multigrid");
     list.sublist("multigrid")
         .set("degree", options_.degree, "of Chebyshev's polynomial")
-        .set("coarsest level", options_.coarse_size, "unknowns at most")
+        .set("coarsest level", options_.direct_limit(1), "unknowns at most")
         .set("minimum per rank", options_.minimum_per_rank, "numbers of a matrix, on average");
     for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
   }

@@ -4,16 +4,17 @@
 
 namespace sprekk::solve {
 
-multigrid::Options MultigridOptions::of_nodes() const {
+multigrid::Options MultigridOptions::of_nodes(int dim) const {
   multigrid::Options options;
   options.degree = degree.value_or(options.degree);
   options.coarse_size = coarsest.value_or(options.coarse_size);
+  if (dim == 2 && !coarsest) options.below_finest = 100000;
   options.minimum_per_rank = minimum_per_rank;
   return options;
 }
 
 multigrid::Options MultigridOptions::of_corners(int dim) const {
-  auto options = of_nodes();
+  auto options = of_nodes(dim);
   options.degree = degree.value_or(dim == 2 ? 8 : 6);
   options.coarse_size = coarsest.value_or(dim == 2 ? 200000 : 4000);
   options.raise = 1e-12;
@@ -25,10 +26,9 @@ void MultigridOptions::describe(base::Section& section) {
   section.entry(degree, "degree", "-", base::at_least(1),
                 "degree of the Chebyshev smoother (Adams et al. 2003); higher on the finest level in flat cells; "
                 "absent: 4, for fields on facets 8 in 2D and 6 in 3D");
-  section.entry(
-      coarsest, "coarsest level", "-", base::at_least(1),
-      "number of unknowns up to which a level is solved directly; absent: 300, for fields on facets 200000 in "
-      "2D and 4000 in 3D");
+  section.entry(coarsest, "coarsest level", "-", base::at_least(1),
+                "number of unknowns up to which a level is solved directly; absent: 300, in 2D 100000 below the finest "
+                "level, for fields on facets 200000 in 2D and 4000 in 3D");
   section.hint({"least of a rank"}, "Did you mean \"minimum per rank\"?");
   section.entry(minimum_per_rank, "minimum per rank", "-", base::at_least(1),
                 "minimum mean number of matrix entries per rank; a smaller level moves to fewer ranks");

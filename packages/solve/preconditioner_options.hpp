@@ -20,7 +20,10 @@ struct MultigridOptions {
   std::optional<int> degree, coarsest;  ///< Options::degree, Options::coarse_size
   int minimum_per_rank = multigrid::Options().minimum_per_rank;
 
-  multigrid::Options of_nodes() const;
+  /// For fields on nodes or cells, in the dimension `dim`. In 2D, large levels below the finest are solved directly:
+  /// factors of 2D matrices are small, and aggregates that do not cross fractures would become worse from level to
+  /// level.
+  multigrid::Options of_nodes(int dim) const;
   /// For the corners of a scalar field on facets, in the dimension `dim`. The coarsest level is larger, because
   /// aggregates represent constants in single fractures less well, and factors of matrices with one unknown per node
   /// are small. Higher degrees, and in 2D aggregates along strong couplings, serve anisotropic coefficients. In 3D such

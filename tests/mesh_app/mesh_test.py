@@ -4,7 +4,7 @@ import unittest
 from unittest import mock
 
 import numpy as np
-from conformity import CUBE, SQUARE, defects, measure_of, meshed, network, numbers, planned
+from conformity import CUBE, SQUARE, defects, measure_of, meshed, mesher, network, numbers, planned
 from msh_file import groups_of
 from orientations import poles, strikes
 from report import gamma
@@ -117,6 +117,17 @@ class Lines(Conformity):
         edges = np.sort(np.linalg.norm(np.diff(mesh.points[mesh.faces[mesh.face_owner == 4]], axis=1), axis=(1, 2)))
         self.assertTrue(0.5 * 0.003 < edges[0] < 1.5 * 0.003, edges[0])
         self.assertTrue(0.4 * 0.06 < edges[-1] < 1.5 * 0.06, edges[-1])
+
+    def test_precision_of_the_division_of_lines(self):
+        """Edges differ from those of the default precision of gmsh, which costs more time, by less than 1e-4."""
+        lengths = []
+        for precision in (mesher.PRECISION_OF_FIELDS, 1e-9):
+            with mock.patch.object(mesher, "PRECISION_OF_FIELDS", precision):
+                plan, mesh = meshed(network({"a": [[0.03, 0.5], [0.95, 0.52]], "b": [[0.41, 0.2], [0.43, 0.9]]}, size_at_tips=1e-3))
+            lengths.append(np.sort(np.linalg.norm(np.diff(mesh.points[mesh.faces], axis=1), axis=(1, 2))))
+        difference = np.max(np.abs(lengths[0] / lengths[1] - 1))
+        self.assertLess(difference, 1e-4)
+        self.assertGreater(difference, 1e-9)  # the precision takes effect
 
     def test_gaps_are_resolved(self):
         """Cells between two parallel fractures are about as large as the gap."""

@@ -147,6 +147,13 @@ class Accuracy(ProgramTest):
             self.call("run", self.scene(FAULT), "--output", f"parts_{ranks}", "--restart", *arguments, ranks=ranks)
             results = self.results(f"parts_{ranks}")
             self.assertEqual(results["mesh"], whole["mesh"])
+            seconds = [mesh.pop("seconds") for mesh in results["accuracy"]["meshes"]]
+            self.assertEqual(seconds, sorted(seconds))
+            self.assertEqual(len(seconds), len(whole["accuracy"]["meshes"]))
+            for first, other in zip(whole["accuracy"]["meshes"][:-1], results["accuracy"]["meshes"]):  # the last error is since the restart
+                self.assertEqual(first["cells"], other["cells"])
+                for key in ("value", "error"):
+                    self.assertAlmostEqual(first["quantities"]["fault slips"][key] / other["quantities"]["fault slips"][key], 1, delta=1e-6)
             for first, other in zip(whole["steps"], results["steps"]):
                 slips = [step["fractures"]["fault"]["mean_slip"] for step in (first, other)]
                 self.assertAlmostEqual(slips[0] / slips[1], 1, delta=1e-8)

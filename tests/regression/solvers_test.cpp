@@ -59,6 +59,41 @@ TEST(LinearSolvers, AFineLevelKeepsIterationsLow) {
   }
 }
 
+/// In 2D the second level of nodes is solved directly, which saves iterations.
+TEST(LinearSolvers, TheSecondLevelIn2DIsSolvedDirectly) {
+  const std::string name = "verification/crossing_2d.xml", mesh = "Mesh.cells={80, 80}";
+  const auto direct = run(name, {mesh, "Solver.Linear solver.type=direct"}, 1),
+             usual = run(name, {mesh, "Solver.Linear solver.type=iterative"}, 1),
+             small = run(name,
+                         {mesh, "Solver.Linear solver.type=iterative",
+                          "Solver.Blocks.displacement.multigrid.coarsest level=300"},
+                         1);
+  for (const auto* r : {&direct, &usual, &small}) ASSERT_TRUE(r->report.converged) << r->report.reason;
+  for (const int block : {0, 2}) EXPECT_LT(difference_of(direct, usual, block), 1e-8) << block;
+  const auto levels = [](const auto& r) {
+    return r.model->newton().linear().solver().solver->costs().back().n_unknowns.size();
+  };
+  EXPECT_EQ(levels(usual), 2u);
+  EXPECT_GT(levels(small), 2u);
+  EXPECT_LT(solve::iterations(usual.report.linear_solves), solve::iterations(small.report.linear_solves));
+}
+
+/// In 2D the corners of face pressures are one level, solved directly, also above the limit in 3D.
+TEST(LinearSolvers, CornersIn2DAreSolvedDirectly) {
+  constexpr GlobalIndex limit_in_3d = 4000;
+  const std::string name = "flow/network_2d.xml", mesh = "Mesh.cells={70, 70}";
+  const Real t = 1e5;  // s
+  const auto direct = run(name, {mesh, "Solver.Linear solver.type=direct"}, t),
+             iterative = run(name, {mesh, "Solver.Linear solver.type=iterative"}, t);
+  for (const auto* r : {&direct, &iterative}) ASSERT_TRUE(r->report.converged) << r->report.reason;
+  for (std::size_t block = 0; block < direct.model->state().size(); ++block)
+    EXPECT_LT(difference_of(direct, iterative, static_cast<int>(block)), 1e-8) << block;
+  const auto corners = iterative.model->newton().linear().solver().solver->costs().back();
+  EXPECT_EQ(corners.name, "multigrid of 'face pressure'");
+  ASSERT_EQ(corners.n_unknowns.size(), 1u);
+  EXPECT_GT(corners.n_unknowns.front(), limit_in_3d);
+}
+
 /// Opening and closing faces change the zeros among couplings of order 2; multigrid of order 1 keeps its graph.
 TEST(LinearSolvers, OrderTwoFollowsContact) {
   auto r = run("contact/masonry_wall_2d.xml",
