@@ -48,7 +48,7 @@ class Scenes(BadInput):
     def test_what_regions_have_of_their_own(self):
         self.refuse_set(['Regions > bulk > "pressure": needs the section "Flow"'], "Regions.bulk.pressure=1")
         self.refuse_set(['Regions > bulk > "initial stress": has 2 values, must have 4'], "Regions.bulk.initial stress={0, 0}")
-        self.refuse_set(['Regions > bulk > "initial stress": is "t"; it may depend on x, y, z, not on t'], "Regions.bulk.initial stress={0, t, 0, 0}")
+        self.refuse_set(['Regions > bulk > "initial stress": is "t"; it may depend on the position, not on t'], "Regions.bulk.initial stress={0, t, 0, 0}")
 
     def test_names_of_other_programs_are_known(self):
         for name, reported in (("kn", 'Did you mean "normal stiffness"?'), ("shear stiffness", 'Did you mean "tangential stiffness"?'),
@@ -162,7 +162,7 @@ class Scenes(BadInput):
         refuse(['Heat > "scheme": "rt0" takes triangles and tetrahedra'], "Heat.scheme=rt0")
         refuse(['"heat transfer coefficient" = y - 2 is -1.'], surface + "heat transfer coefficient=y - 2")
         refuse(['Materials > rock: "volumetric heat capacity" = 1-x is -', "must be at least 0"], "Materials.rock.volumetric heat capacity=1-x")
-        refuse(['"volumetric heat capacity": is "t"; it may depend on x, y, z, not on t'], "Materials.rock.volumetric heat capacity=t")
+        refuse(['"volumetric heat capacity": is "t"; it may depend on the position, not on t'], "Materials.rock.volumetric heat capacity=t")
         refuse(["Heat: the level of the temperature is not determined"], surface + "heat transfer coefficient=0",
                "Materials.rock.volumetric heat capacity=0 J/(m^3*K)")
         refuse(['"error estimate": is of triangles and tetrahedra where something flows; the mesh is of quadrilaterals'], "Output.error estimate=true")
@@ -195,7 +195,7 @@ class Scenes(BadInput):
                "Heat.advection=second order", "Time.scheme=BDF2")
         refuse(['Heat > "heat of friction": needs fractures, and rock that deforms'], "Heat.heat of friction=true", "Flow.rigid rock=true")
         refuse(['Materials > rough joint > "thermal conductivity": is 0, must be positive'], "Materials.rough joint.thermal conductivity=0")
-        refuse(['"thermal expansion": is "t"; it may depend on x, y, z, not on t'], "Materials.granite.thermal expansion=t")
+        refuse(['"thermal expansion": is "t"; it may depend on the position, not on t'], "Materials.granite.thermal expansion=t")
         refuse(['Boundary conditions > end: gives a "heat flux", which is one of rock, not of a "fracture"'], "Boundary conditions.end.boundary=north",
                "Boundary conditions.end.fracture=west", "Boundary conditions.end.heat flux=1")
         refuse(['gives a heat flux where "north" gives the temperature'], "Boundary conditions.more.boundary=north", "Boundary conditions.more.heat flux=1")
@@ -230,9 +230,9 @@ class Scenes(BadInput):
         self.refuse(['Materials > rock: "permeability" = {0.25-x} is not positive definite at x = (0.'], "check", self.scene("flow/source_2d.xml"),
                     "--set", "Materials.rock.permeability={0.25-x}", any_point=True)
         refuse(['Flow: without fractures, needs rock with a "permeability" above 0', 'Flow > "source": needs rock'], "Materials.rock.permeability={0}")
-        refuse(['rock > "permeability": is "1+t"; it may depend on x, y, z, not on t'], "Materials.rock.permeability={1+t}")
+        refuse(['rock > "permeability": is "1+t"; it may depend on the position, not on t'], "Materials.rock.permeability={1+t}")
         refuse(['west > "conductance"', 'must be at least 0'], "Boundary conditions.west.conductance=-1")
-        refuse(['west > "conductance": is "t"; it may depend on x, y, z, not on t'], "Boundary conditions.west.conductance=t")
+        refuse(['west > "conductance": is "t"; it may depend on the position, not on t'], "Boundary conditions.west.conductance=t")
         refuse(['Bulk: prescribes a force or stress of the rock'], "Bulk.body force={1, 0}")
         (self.folder / "b.xml").write_text(self.scene(PUSH).read_text().replace('name="fracture"', 'name="intersections"'))
         self.refuse(['Fractures > "intersections": is the name of intersections'], "check", "b.xml")
