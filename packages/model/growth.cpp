@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace sprekk::model {
 
@@ -57,11 +58,18 @@ std::vector<Tips::Tip> Tips::tips_of(Model& model) const {
       return nullptr;
     };
     const auto *x = column("x"), *y = column("y"), *K = column("K_hoop"), *toughness = column("toughness"),
-               *kink_x = column("kink_x"), *kink_y = column("kink_y");
+               *kink_x = column("kink_x"), *kink_y = column("kink_y"), *K_I = column("K_I"), *K_II = column("K_II"),
+               *G = column("G");
     if (!K || !toughness || !kink_x || !kink_y) return;
-    for (std::size_t k = 0; k < K->size(); ++k)
-      if (!std::isnan((*toughness)[k]))
-        tips.push_back({{(*x)[k], (*y)[k]}, {(*kink_x)[k], (*kink_y)[k]}, (*K)[k] / (*toughness)[k]});
+    for (std::size_t k = 0; k < K->size(); ++k) {
+      const Real K_c = (*toughness)[k], compliance = (*G)[k] / ((*K_I)[k] * (*K_I)[k] + (*K_II)[k] * (*K_II)[k]);
+      if (!std::isnan(K_c))
+        tips.push_back({{(*x)[k], (*y)[k]},
+                        {(*kink_x)[k], (*kink_y)[k]},
+                        (*K)[k] / K_c,
+                        table.fractures[k],
+                        std::isnan(compliance) ? 0 : K_c * K_c * compliance});
+    }
   });
   return tips;
 }
@@ -88,6 +96,7 @@ void Tips::begin(Model& model) {
 
 mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   change_ = {};
+  growing_.clear();
   turned_.clear();
   const auto& growth = model.scene().growth;
   if (!growth) return change_;
@@ -100,7 +109,10 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   begin_ = begin;
   const auto tips = tips_of(model);
   turn(*growth, tips, log);
-  if (change_.is_none()) extend(*growth, tips);
+  if (change_.is_none()) {
+    measure(*growth, tips);
+    extend(*growth, tips);
+  }
   for (const auto& tip : tips)
     if (change_.is_none() && std::isnan(tip.ratio) && may_grow(tip.x)) {
       arrested_.push_back(tip.x);
@@ -120,6 +132,7 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   for (const auto& one : change_.extensions)
     log.info("t = {:.6g}: the tip at ({:.6g}, {:.6g}) grows by {:.4g} m along ({:.4f}, {:.4f})", model.time(),
              one.tip[0], one.tip[1], one.length, one.direction[0], one.direction[1]);
+  if (change_.is_none()) complete(model, log);
   return change_;
 }
 
@@ -167,7 +180,43 @@ void Tips::extend(const Growth& growth, const std::vector<Tip>& tips) {
   if (largest < 1) return;
   for (const auto& tip : tips)
     if (may_grow(tip.x) && tip.ratio >= std::min<Real>(1, together * largest))
-      change_.extensions.push_back({tip.x, tip.direction, growth.segment, new_size(growth)});
+      change_.extensions.push_back({tip.x, tip.direction, growth.segment, new_size(growth)}), growing_.push_back(tip);
+}
+
+/// Notes the tips of the last round of extensions, which have their final direction.
+void Tips::measure(const Growth& growth, const std::vector<Tip>& tips) {
+  for (auto& one : segments_)
+    for (const auto& tip : tips)
+      if (!one.after && !std::isnan(tip.ratio) && distance(tip.x, one.tip) < 1e-3 * growth.segment) one.after = tip;
+}
+
+/// Makes the table of the extensions of the step. Warns if the ratio of K to the toughness rises as tips grow at
+/// constant load.
+void Tips::complete(const Model& model, base::Log& log) {
+  extensions_ = {{},
+                 {{"x", "m"},
+                  {"y", "m"},
+                  {"length", "m"},
+                  {"released", "J/m"},
+                  {"fracture_energy", "J/m"},
+                  {"lost_energy", "J/m"}}};
+  std::map<int, std::array<Real, 2>> unstable;  // by single fracture: length, lost energy
+  for (const auto& one : segments_)
+    if (one.after && one.after->ratio > one.before.ratio) unstable[one.before.fracture] = {};
+  for (const auto& one : segments_) {
+    const auto& after = one.after ? *one.after : one.before;
+    const Real length = distance(one.begin, one.tip), released = length * (one.before.G() + after.G()) / 2,
+               dissipated = length * (one.before.G_c + after.G_c) / 2;
+    const auto found = unstable.find(one.before.fracture);
+    const Real lost = found == unstable.end() ? 0 : released - dissipated;
+    const Real row[] = {one.tip[0], one.tip[1], length, released, dissipated, lost};
+    extensions_.fractures.push_back(one.before.fracture);
+    for (std::size_t c = 0; c < extensions_.columns.size(); ++c) extensions_.columns[c].values.push_back(row[c]);
+    if (found != unstable.end()) found->second = {found->second[0] + length, found->second[1] + lost};
+  }
+  for (const auto& [fracture, of] : unstable)
+    log.warning("t = {:.6g}: unstable growth of \"{}\" by {:.4g} m loses {:.4g} J/m", model.time(),
+                model.mesh().single_fractures[fracture].name, of[0], of[1]);
 }
 
 void Tips::note(const std::vector<int>& made, base::Log& log) {
@@ -176,9 +225,11 @@ void Tips::note(const std::vector<int>& made, base::Log& log) {
     const auto result = static_cast<mesh::Extended>(made[k++]);
     if (result == mesh::Extended::junction) {
       log.info("the tip at ({:.6g}, {:.6g}) has met another fracture", one.tip[0], one.tip[1]);
-    } else if (result == mesh::Extended::tip) {
+    }
+    if (result != mesh::Extended::none) {
+      const Point tip{one.tip[0] + one.length * one.direction[0], one.tip[1] + one.length * one.direction[1]};
       segments_.push_back(
-          {one.tip, {one.tip[0] + one.length * one.direction[0], one.tip[1] + one.length * one.direction[1]}});
+          {.begin = one.tip, .tip = tip, .is_settled = result == mesh::Extended::junction, .before = growing_[k - 1]});
     } else {
       arrested_.push_back(one.tip);
       log.warning(

@@ -1,9 +1,11 @@
 // Growth of fractures along free paths in 2D: section Growth of a scene, and changes of the mesh during a step.
 #pragma once
 
+#include "estimate/state_table.hpp"
 #include "mesh/bisect.hpp"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +13,14 @@ namespace sprekk::base {
 class Section;
 class Log;
 }  // namespace sprekk::base
+namespace sprekk::mesh {
+struct Mesh;
+}
 
 namespace sprekk::model {
 
 class Model;
+struct Scene;
 
 /// Section Growth of a scene. The fractures that may grow have an entry of their physics, the toughness.
 struct Growth {
@@ -24,6 +30,10 @@ struct Growth {
   int largest = 20;  ///< number of rounds of extensions in a step
   void describe(base::Section& section);
 };
+
+/// Throws an Error if an extension is longer than the body, or if a toughness is out of bounds at a tip.
+/// Collective.
+void check_growth(const Scene& scene, const mesh::Mesh& mesh);
 
 /// Growth of the tips of a model. A step is repeated on a changed mesh until no tip would grow. Collective.
 class Tips {
@@ -39,24 +49,38 @@ class Tips {
   mesh::MeshChange for_step(Model& model, Real begin, base::Log& log);
   /// Notes which extensions and turns were made, in the order of the change.
   void note(const std::vector<int>& made, base::Log& log);
+  /// Extensions of the complete step: tip x, y, `length`, and in J/m `released`, `fracture_energy` and `lost_energy`.
+  ///
+  /// The energies are the length times the means of G = K_hoop^2/E' and G_c = toughness^2/E' before the extension and
+  /// at its new tip, at the load of the end of the step; the values before it, if the new tip has no K. The growth of a
+  /// fracture in the step is unstable if K/toughness rises in any extension; then the difference of both energies is
+  /// lost. An extension that meets another fracture counts with its planned length.
+  const estimate::StateTable& extensions() const { return extensions_; }
 
  private:
   using Point = std::array<Real, 2>;
   struct Tip {
     Point x, direction;
-    Real ratio;  ///< intensity/toughness
+    Real ratio;    ///< intensity/toughness
+    int fracture;  ///< single fracture
+    Real G_c;      ///< N/m
+    Real G() const { return ratio > 0 ? ratio * ratio * G_c : 0; }
   };
   struct Segment {
     Point begin, tip;
     Real angle = 0, turned = 0;  ///< to the direction of growth when last computed; last turn, rad
     int n_turns = 0;
     bool is_settled = false;
+    Tip before = {};                ///< tip that grew
+    std::optional<Tip> after = {};  ///< new tip; empty before the next round, and without K
   };
   std::vector<Tip> tips_of(Model& model) const;
   void turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log);
   void warn_about(const Segment& one, base::Log& log) const;
   bool may_grow(const Point& tip) const;
   void extend(const Growth& growth, const std::vector<Tip>& tips);
+  void measure(const Growth& growth, const std::vector<Tip>& tips);
+  void complete(const Model& model, base::Log& log);
 
   Real begin_ = 0;
   bool in_step_ = false;
@@ -64,6 +88,8 @@ class Tips {
   std::vector<Segment> segments_;    ///< of the step
   std::vector<Point> arrested_;      ///< tips without room
   mesh::MeshChange change_;          ///< last one
+  std::vector<Tip> growing_;         ///< tips of its extensions
+  estimate::StateTable extensions_;  ///< of the complete step
   std::vector<std::size_t> turned_;  ///< segments of its turns
 };
 
