@@ -290,9 +290,9 @@ def of_run(content, reference, found):
     end = last["time"]
     tables = [
         *of_fractures(fractures, dim, end),
+        *of_growth(content["steps"], content.get("single_fractures", []), dim, end),
         *of_events(found, dim, end),
         *of_points(content, last),
-        *of_growth(content["steps"], content.get("single_fractures", []), dim, end),
         *of_wells([step for step in content["steps"] if "wells" in step] or [last], dim),
         *of_boundaries(last),
         *of_energy(last, dim),
