@@ -9,6 +9,7 @@ folder. A directory gives these pictures, if the run contains the data:
   mohr.png         stress on faces, compared with the strength of the joints
   flow.png         pressure and velocity
   overview.png     slip and change of pressure of a network, in 2D
+  growth.png       fractures that grow, by the time of their growth
   temperature.png  temperature and heat flux
   error.png        estimated error of one step
   loops.png        mean traction against mean jump of each fracture
@@ -83,6 +84,7 @@ def of_run(directory, options):
     import events
     import flow
     import fractures
+    import growth
     import loops
     import magnitudes
     import maps
@@ -122,13 +124,16 @@ def of_run(directory, options):
                 initial = scene.get("Flow", {}).get("initial pressure") if kind is flow.FLUID else None
                 yield picture, flow.of_step(rock, cut, title, options.whole, kind, initial, wells)
         if deforms:
-            yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole)
+            yield "bulk", bulk.of_step(rock, joints, title, options.warp, options.whole, growth.box_of(rock, joints, content, options.whole))
         if deforms and joints and joints.GetNumberOfCells() > 0:
             sizes = fractures.scales(rock, read.arrays(joints.GetCellData()))
             singles = content.get("single_fractures", [])
             yield "fractures", fractures.of_step(rock, joints, names, title, singles, options.whole, wells)
             yield "maps", maps.of_step(rock, joints, names, title, singles, options.whole, wells)
             yield "mohr", mohr.of_step(rock, joints, scene, title, content, time)
+            figure = growth.of_run([step for step in fracture_steps if step[0] <= time], rock, joints, names, title, clock, content, options.whole, wells)
+            if figure:
+                yield "growth", figure
         for estimate in [step["error_estimate"] for step in states if step["time"] == time and "error_estimate" in step]:
             yield "error", error.of_step(rock, joints, estimate, title, options.whole)
     else:

@@ -65,16 +65,23 @@ def panels(surface):
         yield quantity(values), plt.get_cmap(colours), quantity.label, on_points
 
 
-def of_plane(grid, fractures, title, factor=None):
+def of_plane(grid, fractures, title, factor=None, box=None):
+    """Returns the figure of the rock, or of its part in a box (low, high), without the mean displacement of this part."""
     surface = read.surface(grid)
     displacement = surface.point_data["displacement"]
-    factor = warp_factor(surface.points, displacement, factor)
+    if box is not None:
+        room = 0.2 * (box[1] - box[0])  # for the displacement
+        is_in = np.all((surface.points[:, :2] > box[0] - room) & (surface.points[:, :2] < box[1] + room), axis=1)
+        surface = surface.part([k for k, polygon in enumerate(surface.polygons) if is_in[polygon].any()])
+        displacement = np.where(is_in[:, None], displacement - displacement[is_in].mean(axis=0), 0)
+        title += ", region of the fractures"
+    factor = warp_factor(surface.points if box is None else box, displacement, factor)
     rest, moved = surface.points[:, :2], (surface.points + factor * displacement)[:, :2]
     edges = rim(surface, fractures)
-    figure, axes, where = panels_of_plane(3, moved)
+    figure, axes, where = panels_of_plane(3, moved if box is None else box)
     figure.suptitle(f"{title}, deformation × {factor:g}", fontsize=10)
     for ax, (values, colours, label, on_points) in zip(axes, panels(surface)):
-        norm = limits(values, clip=not on_points)
+        norm = limits(values[np.concatenate(surface.polygons)] if on_points else values, clip=not on_points)
         if on_points:
             ax.tripcolor(*moved.T, triangles(surface.polygons), values, cmap=colours, norm=norm, shading="gouraud")
         else:
@@ -84,6 +91,8 @@ def of_plane(grid, fractures, title, factor=None):
         ax.add_collection(LineCollection(moved[edges], colors=INK, linewidths=0.9))
         ax.margins(0.03)
         ax.autoscale_view()
+        if box is not None:
+            ax.set(xlim=box[:, 0], ylim=box[:, 1])
         colour_bar(figure, ax, norm, colours, label, **where)
     return figure
 
@@ -127,8 +136,8 @@ def of_body(grid, fractures, title, factor=None, whole=False):
     return figure
 
 
-def of_step(grid, fractures, title, factor=None, whole=False):
-    """Returns the figure of a grid of the rock. The grid of the fractures may be None."""
+def of_step(grid, fractures, title, factor=None, whole=False, box=None):
+    """Returns the figure of a grid of the rock. The grid of the fractures may be None. `box`: part of the rock in 2D."""
     if read.is_plane(grid):
-        return of_plane(grid, fractures, title, factor)
+        return of_plane(grid, fractures, title, factor, box)
     return of_body(grid, fractures, title, factor, whole)

@@ -47,7 +47,7 @@ def pictures(directory, dpi, time):
             raise PlotError(said)
         files = [Path(line) for line in done.stdout.splitlines()]
         drawn = [(file.stem, file.read_bytes()) for file in files if file.suffix == ".png"]
-        tables = [directory / "events.csv", *(file for file in files if file.suffix == ".csv")]
+        tables = [*(directory / name for name in ("events.csv", "growth.csv")), *(file for file in files if file.suffix == ".csv")]
         return drawn, [(file.name, file.read_text()) for file in tables if file.is_file()], said
 
 

@@ -11,6 +11,7 @@ NOISE = 1e-9  # round-off relative to the largest value of a column
 
 OF_FRACTURES = [
     ("area", "area", "m²"),
+    ("area_at_start", "area at the start", "m²"),
     ("first_slip", "first slip after", "s"),
     ("fraction_slip", "slipping at the end", "%"),
     ("fraction_has_slipped", "has slipped", "%"),
@@ -22,17 +23,20 @@ OF_FRACTURES = [
     ("max_fracture_pressure", "largest pressure", "Pa"),
     ("area_broken", "broken area", "m²"),
     ("fracture_energy", "fracture energy", "J"),
+    ("lost_energy", "energy lost in growth", "J"),
     ("friction_energy", "energy dissipated by slip", "J"),
     ("fluid_volume", "fluid volume", "m³"),
     ("leaked_volume", "leaked volume", "m³"),
     ("moment", "moment", "N m"),
     ("moment_magnitude", "moment magnitude", ""),
 ]
-CHANGES = ("max_slip", "first_slip", "fraction_has_slipped", "fraction_open")  # fractures without them have no row
+CHANGES = ("max_slip", "first_slip", "fraction_has_slipped", "fraction_open", "fracture_energy")  # fractures without them have no row
 OF_PLANE = {  # titles and units in 2D
     "area": ("length", "m"),
+    "area_at_start": ("length at the start", "m"),
     "area_broken": ("broken length", "m"),
     "fracture_energy": ("fracture energy per depth", "J/m"),
+    "lost_energy": ("energy lost in growth, per depth", "J/m"),
     "friction_energy": ("energy dissipated by slip, per depth", "J/m"),
     "fluid_volume": ("fluid volume per depth", "m²"),
     "leaked_volume": ("leaked volume per depth", "m²"),
@@ -60,10 +64,12 @@ def singles(content, step, found):
     `found` are the slip events of the run."""
     first = {event.fracture: event.start for event in reversed(found)}
     columns = step.get("single_fractures", {})
+    grows = any("growth" in one for one in content["steps"])
     return {
         one["name"]: {
             "area": one["area"],
             "first_slip": first.get(one["name"]),
+            **({"area_at_start": one["area"]} if grows else {}),
             **{key: values[k] for key, values in columns.items()},
         }
         for k, one in enumerate(content.get("single_fractures", []))
@@ -72,10 +78,10 @@ def singles(content, step, found):
 
 
 def without_noise(fractures):
-    """Returns the fractures with zero slip, without its round-off, where no face has slipped."""
+    """Returns the fractures with zero slip, without its round-off, where no face has slipped or opened."""
     return {
         name: {**one, **{key: 0.0 for key in ("max_slip", "mean_slip") if key in one}}
-        if one.get("fraction_has_slipped") == 0
+        if one.get("fraction_has_slipped") == 0 and not (one.get("fraction_open") or (one.get("max_opening") or 0) > 0)
         else one
         for name, one in fractures.items()
     }
@@ -124,6 +130,30 @@ def of_joints(content, reference):
     if rows:
         others = f"; {len(own) - len(shown)} others are not listed" if len(own) > len(shown) else ""
         yield Table("Joints of single fractures", ["fracture", *entries], rows, f"–: as in the material{others}")
+
+
+def of_growth(steps, singles, dim, end):
+    """Yields the table of extensions along free paths: sums over the extensions of a fracture in a step."""
+    rows = {}
+    for step in steps:
+        growth = step.get("growth", {"fracture": []})
+        for k, fracture in enumerate(growth["fracture"]):
+            row = rows.setdefault((step["time"], fracture), {"length": 0.0, "fracture_energy": 0.0, "released": 0.0, "tips": []})
+            for key in ("length", "fracture_energy", "released"):
+                row[key] += growth[key][k]
+            row["tips"].append((growth["x"][k], growth["y"][k]))
+            row["size"] = step.get("single_fractures", {}).get("area", {fracture: None})[fracture]
+    if not rows:
+        return
+    shown = list(rows)[-MAX_ROWS:]
+    columns = [column("time", [time for time, _ in shown], "s", end), ("fracture", [singles[k]["name"] for _, k in shown])]
+    columns += [column(title, [rows[key][name] for key in shown], base) for name, title, base in (
+        ("length", "extension", "m"), ("size", "length after it", "m"), ("fracture_energy", "fracture energy per depth", "J/m"),
+        ("released", "released energy per depth", "J/m"))]
+    last = [" ".join(f"({number(x)}, {number(y)})" for x, y in rows[key]["tips"][-2:]) for key in shown]
+    others = len(rows) - len(shown)
+    yield Table("Growth", [title for title, _ in columns] + ["last new tips (m)"], list(zip(*(texts for _, texts in columns), last)),
+                f"{others} earlier ones are in growth.csv" if others else "")
 
 
 def of_boundaries(step):
@@ -175,7 +205,8 @@ def of_energy(step, dim):
         ("work on fractures", -work["traction"] if "traction" in work else None),
         ("released by extension or excavation", energy.get("released")),
     ]
-    for key, title in (("friction_energy", "dissipated by slip"), ("fracture_energy", "fracture energy of bonds")):
+    for key, title in (("friction_energy", "dissipated by slip"), ("fracture_energy", "fracture energy"),
+                       ("lost_energy", "lost in growth")):
         values = [one[key] for one in fractures if key in one]
         rows.append((f"– {title}", sum(values) if values else None))
     rows += [(f"fluid: {name}", value) for name, value in balance.items()]
@@ -235,6 +266,8 @@ def of_points(content, step):
     """Yields the tables of quantities at points of fractures."""
     names = [one["name"] for one in content.get("single_fractures", [])]
     for name, units in content.get("tables", {}).items():
+        if name == "growth":
+            continue
         values = step.get(name, {})
         shown = range(min(MAX_ROWS, len(values.get("fracture", []))))
         if not shown:
@@ -257,6 +290,7 @@ def of_run(content, reference, found):
     end = last["time"]
     tables = [
         *of_fractures(fractures, dim, end),
+        *of_growth(content["steps"], content.get("single_fractures", []), dim, end),
         *of_events(found, dim, end),
         *of_points(content, last),
         *of_wells([step for step in content["steps"] if "wells" in step] or [last], dim),
@@ -277,11 +311,19 @@ def headline(content):
     if slip:
         name = max(slip, key=slip.get)
         found.append(f"The largest slip is {quantity(slip[name], 'm')}, on {name}." if slip[name] > 0 else "No fracture slips.")
+    opening = {name: one.get("max_opening") or 0 for name, one in fractures.items()}
+    if opening and slip and not max(slip.values()) > 0 and max(opening.values()) > 0:
+        name = max(opening, key=opening.get)
+        found.append(f"The largest opening is {quantity(opening[name], 'm')}, on {name}.")
+    sizes = [(one["area"] - one["area_at_start"], name) for name, one in fractures.items() if "area_at_start" in one]
+    if sizes and max(sizes)[0] > 0:
+        found.append(f"{max(sizes)[1]} grows most, by {quantity(max(sizes)[0], 'm')}.")
     return " ".join(found)
 
 
 def time_of_pictures(content, written):
-    """Returns the time of the last step with pictures, or of the one with the largest slipping area if no face slips there.
+    """Returns the time of the last step with pictures, or of the one with the largest slipping area if no face slips there
+    and no fracture grows along a free path.
 
     `written`: times of the steps with files; without them the last step."""
     shown = [step for step in content["steps"] if step["time"] in written] or content["steps"][-1:]
@@ -290,5 +332,6 @@ def time_of_pictures(content, written):
         sum(area * (share or 0) for area, share in zip(areas, step.get("single_fractures", {}).get("fraction_slip", ())))
         for step in shown
     ]
-    k = len(slipping) - 1 if slipping[-1] > 0 or not any(slipping) else int(np.argmax(slipping))
+    is_last = slipping[-1] > 0 or not any(slipping) or any("growth" in step for step in content["steps"])
+    k = len(slipping) - 1 if is_last else int(np.argmax(slipping))
     return shown[k]["time"]

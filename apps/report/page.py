@@ -13,6 +13,7 @@ CAPTIONS = {
     "fractures": "Fractures: tangential jump, slip, opening, tractions and contact state",
     "maps": "Slip and opening of fractures in space, and slip tendency by direction",
     "flow": "Pressure and flow in rock and fractures",
+    "growth": "Fractures by the time of their growth",
     "temperature": "Temperature and heat flux in the rock",
     "error": "Distribution of the estimated error",
     "loops": "Mean traction against mean jump of fractures, over all steps",
@@ -59,6 +60,8 @@ def number_of_fractures(results, scene):
 
 def summary(results, scene, headline):
     mesh, steps = results.get("mesh", {}), results["steps"]
+    begun = results.get("initial", {}).get("mesh", mesh).get("cells", 0)
+    cells = f"{mesh.get('cells', 0)} cells" + (f" ({begun} at the start)" if begun != mesh.get("cells", 0) else "")
     body = {2: "A plane section of rock", 3: "A body of rock"}.get(mesh.get("dimension"), "Rock")
     fields = {field["name"] for field in results.get("blocks", {}).get("fields", [])}
     places = ["rock"] * ("pressure" in fields) + ["fractures"] * bool(mesh.get("fracture_faces"))
@@ -69,7 +72,7 @@ def summary(results, scene, headline):
         if section in scene.entries
     ]
     return (
-        f"{body}{' ' + ' and '.join(physics) if physics else ''}, of {mesh.get('cells', 0)} cells, has {number_of_fractures(results, scene)} "
+        f"{body}{' ' + ' and '.join(physics) if physics else ''}, of {cells}, has {number_of_fractures(results, scene)} "
         f"({mesh.get('fracture_faces', 0)} faces). {count(len(steps), 'step')} up to "
         f"t = {quantity(steps[-1]['time'], 's')}. {headline}"
     )

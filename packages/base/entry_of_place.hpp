@@ -17,7 +17,7 @@ inline bool is_zero(const Expression& value) { return value.is_constant() && val
 
 inline void check_constant_in_time(Section& s, const std::string& entry, const Expression& value) {
   if (!value.constant_in_time())
-    s.fail(entry, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value.text()));
+    s.fail(entry, fmt::format("is \"{}\"; it may depend on the position, not on t", value.text()));
 }
 inline void check_constant_in_time(Section& s, const std::string& entry, const std::optional<Expression>& value) {
   if (value) check_constant_in_time(s, entry, *value);

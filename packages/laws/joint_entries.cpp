@@ -62,7 +62,7 @@ void describe_entry(base::Section& s, const Role& role, const Entry& entry, std:
     meaning += fmt::format("; required with {} {}", role.name, base::quoted_list(needed));
   s.entry(value, entry.name, entry.unit, entry.bounds, meaning);
   if (value && !value->constant_in_time())
-    s.fail(entry.name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
+    s.fail(entry.name, fmt::format("is \"{}\"; it may depend on the position, not on t", value->text()));
 }
 
 /// Text of an error message: `It belongs to friction "Coulomb"; here it is "Barton-Choubey"`.
@@ -161,7 +161,7 @@ void JointMaterial::describe(base::Section& s, bool of_all_kinds) {
           "reduced");
   for (const auto& [name, value] : {std::pair("initial gap", &initial_gap), {"initial aperture", &initial_aperture}})
     if (!value->constant_in_time())
-      s.fail(name, fmt::format("is \"{}\"; it may depend on x, y, z, not on t", value->text()));
+      s.fail(name, fmt::format("is \"{}\"; it may depend on the position, not on t", value->text()));
 }
 
 void JointMaterial::compare_entries(base::Section& s) const {

@@ -109,7 +109,7 @@ class Adder {
 
 /// Returns true for columns of single fractures. Vectors in the global frame are omitted because their sign depends on
 /// the arbitrary normal.
-bool is_of_singles(const FractureColumn& column) { return column.frame != "global" && column.name != "area"; }
+bool is_of_singles(const FractureColumn& column) { return column.frame != "global"; }
 
 }  // namespace
 

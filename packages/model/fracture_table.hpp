@@ -35,7 +35,7 @@ std::vector<FractureColumn> fracture_table(const mesh::Mesh& mesh, const std::ve
 
 /// Returns the columns of sets by their names, vectors by the names of their frames.
 nlohmann::json by_sets(const mesh::Mesh& mesh, const std::vector<FractureColumn>& columns);
-/// Returns one list per column name. Vectors are in the local frame only; the area is omitted.
+/// Returns one list per column name. Vectors are in the local frame only.
 nlohmann::json by_singles(const std::vector<FractureColumn>& columns);
 /// Units of the columns returned by by_singles().
 nlohmann::json units(const std::vector<FractureColumn>& columns);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace sprekk::model {
 
@@ -74,15 +75,19 @@ std::vector<Tips::Tip> Tips::tips_of(Model& model) const {
       return nullptr;
     };
     const auto *x = column("x"), *y = column("y"), *K = column("K_hoop"), *toughness = column("toughness"),
-               *kink_x = column("kink_x"), *kink_y = column("kink_y"), *crossing = column("crossing");
+               *kink_x = column("kink_x"), *kink_y = column("kink_y"), *K_I = column("K_I"), *K_II = column("K_II"),
+               *G = column("G"), *crossing = column("crossing");
     if (!K || !toughness || !kink_x || !kink_y) return;
-    for (std::size_t k = 0; k < K->size(); ++k)
-      if (!std::isnan((*toughness)[k]))
+    for (std::size_t k = 0; k < K->size(); ++k) {
+      const Real K_c = (*toughness)[k], compliance = (*G)[k] / ((*K_I)[k] * (*K_I)[k] + (*K_II)[k] * (*K_II)[k]);
+      if (!std::isnan(K_c))
         tips.push_back({{(*x)[k], (*y)[k]},
                         {(*kink_x)[k], (*kink_y)[k]},
-                        (*K)[k] / (*toughness)[k],
+                        (*K)[k] / K_c,
                         crossing ? (*crossing)[k] : std::nan(""),
-                        table.fractures[k]});
+                        table.fractures[k],
+                        std::isnan(compliance) ? 0 : K_c * K_c * compliance});
+    }
   });
   return tips;
 }
@@ -111,8 +116,8 @@ void Tips::begin(Model& model) {
 
 mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   change_ = {};
-  turned_.clear();
   growing_.clear();
+  turned_.clear();
   const auto& growth = model.scene().growth;
   if (!growth) return change_;
   const auto scope = model.timers().scope("growth");
@@ -126,7 +131,10 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   begin_ = begin;
   const auto tips = tips_of(model);
   turn(*growth, tips, log);
-  if (change_.is_none()) extend(*growth, tips);
+  if (change_.is_none()) {
+    measure(*growth, tips);
+    extend(*growth, tips);
+  }
   for (const auto& tip : tips)
     if (change_.is_none() && std::isnan(tip.ratio) && may_grow(tip.x)) {
       arrested_.push_back(tip.x);
@@ -146,6 +154,7 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   for (const auto& one : change_.extensions)
     log.info("t = {:.6g}: the tip at ({:.6g}, {:.6g}) grows by {:.4g} m along ({:.4f}, {:.4f})", model.time(),
              one.tip[0], one.tip[1], one.length, one.direction[0], one.direction[1]);
+  if (change_.is_none()) complete(model, log);
   return change_;
 }
 
@@ -199,6 +208,42 @@ void Tips::extend(const Growth& growth, const std::vector<Tip>& tips) {
     }
 }
 
+/// Notes the tips of the last round of extensions, which have their final direction.
+void Tips::measure(const Growth& growth, const std::vector<Tip>& tips) {
+  for (auto& one : segments_)
+    for (const auto& tip : tips)
+      if (!one.after && !std::isnan(tip.ratio) && distance(tip.x, one.tip) < 1e-3 * growth.segment) one.after = tip;
+}
+
+/// Makes the table of the extensions of the step. Warns if the ratio of K to the toughness rises as tips grow at
+/// constant load.
+void Tips::complete(const Model& model, base::Log& log) {
+  extensions_ = {{},
+                 {{"x", "m"},
+                  {"y", "m"},
+                  {"length", "m"},
+                  {"released", "J/m"},
+                  {"fracture_energy", "J/m"},
+                  {"lost_energy", "J/m"}}};
+  std::map<int, std::array<Real, 2>> unstable;  // by single fracture: length, lost energy
+  for (const auto& one : segments_)
+    if (one.after && one.after->ratio > one.before.ratio) unstable[one.before.fracture] = {};
+  for (const auto& one : segments_) {
+    const auto& after = one.after ? *one.after : one.before;
+    const Real length = distance(one.begin, one.tip), released = length * (one.before.G() + after.G()) / 2,
+               dissipated = length * (one.before.G_c + after.G_c) / 2;
+    const auto found = unstable.find(one.before.fracture);
+    const Real lost = found == unstable.end() ? 0 : released - dissipated;
+    const Real row[] = {one.tip[0], one.tip[1], length, released, dissipated, lost};
+    extensions_.fractures.push_back(one.before.fracture);
+    for (std::size_t c = 0; c < extensions_.columns.size(); ++c) extensions_.columns[c].values.push_back(row[c]);
+    if (found != unstable.end()) found->second = {found->second[0] + length, found->second[1] + lost};
+  }
+  for (const auto& [fracture, of] : unstable)
+    log.warning("t = {:.6g}: unstable growth of \"{}\" by {:.4g} m loses {:.4g} J/m", model.time(),
+                model.mesh().single_fractures[fracture].name, of[0], of[1]);
+}
+
 void Tips::apply(Model& model, const mesh::MeshChange& change, base::Log& log) {
   const auto before = model.scene().growth ? integrals(model) : std::map<std::string, Real>();
   note(model.mesh(), model.change_mesh(change), log);
@@ -209,13 +254,13 @@ void Tips::apply(Model& model, const mesh::MeshChange& change, base::Log& log) {
 
 nlohmann::json Tips::growth() const {
   nlohmann::json growth = nlohmann::json::object();
-  if (!added_.empty()) growth["added"] = added_;
+  if (!added_.empty()) growth["added_by_growth"] = added_;
   for (const auto& [fracture, met, x, how, margin] : events_) {
     constexpr const char* states[] = {"ends", "grows", "ends at", "crosses"};
     nlohmann::json event = {{"fracture", fracture}, {"x", x[0]}, {"y", x[1]}, {"state", states[how]}};
     if (!met.empty()) event["met"] = met;
     if (!met.empty() && !std::isnan(margin)) event["margin"] = margin;
-    growth["extensions"].push_back(event);
+    growth["tips"].push_back(event);
   }
   return growth;
 }
@@ -228,9 +273,13 @@ void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made,
     const auto& result = made[k];
     const auto met = name(result.met);
     const auto& tip = growing_[k++];
-    events_.push_back({name(tip.single), met, tip.x, result.how, tip.crossing});
-    if (result == Extended::tip || result == Extended::crossing) segments_.push_back({result.begin, result.end});
-    if (result == Extended::crossing)
+    events_.push_back({name(tip.fracture), met, tip.x, result.how, tip.crossing});
+    const bool crosses = result == Extended::crossing;
+    if (crosses) segments_.push_back({.begin = tip.x, .tip = result.begin, .is_settled = true, .before = tip});
+    if (result.begin != result.end)
+      segments_.push_back(
+          {.begin = result.begin, .tip = result.end, .is_settled = result == Extended::junction, .before = tip});
+    if (crosses)
       log.info("the tip at ({:.6g}, {:.6g}) crosses the fracture \"{}\"", one.tip[0], one.tip[1], met);
     else if (result == Extended::junction)
       log.info("the tip at ({:.6g}, {:.6g}) has met another fracture{}", one.tip[0], one.tip[1],

@@ -1,12 +1,14 @@
 // Growth of fractures along free paths in 2D: section Growth of a scene, and changes of the mesh during a step.
 #pragma once
 
+#include "estimate/state_table.hpp"
 #include "mesh/bisect.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +16,14 @@ namespace sprekk::base {
 class Section;
 class Log;
 }  // namespace sprekk::base
+namespace sprekk::mesh {
+struct Mesh;
+}
 
 namespace sprekk::model {
 
 class Model;
+struct Scene;
 
 /// Section Growth of a scene. The fractures that may grow have an entry of their physics, the toughness.
 struct Growth {
@@ -27,6 +33,10 @@ struct Growth {
   int largest = 20;  ///< number of rounds of extensions in a step
   void describe(base::Section& section);
 };
+
+/// Throws an Error if an extension is longer than the body, or if a toughness is out of bounds at a tip.
+/// Collective.
+void check_growth(const Scene& scene, const mesh::Mesh& mesh);
 
 /// Growth of the tips of a model. A step is repeated on a changed mesh until no tip would grow. Collective.
 class Tips {
@@ -42,9 +52,16 @@ class Tips {
   mesh::MeshChange for_step(Model& model, Real begin, base::Log& log);
   /// Changes the mesh of a model at the begin of the step, and notes the results and the integrals that they add.
   void apply(Model& model, const mesh::MeshChange& change, base::Log& log);
-  /// Growth in the step: `added`, integrals over new faces at their begin, by name, and `extensions` in the order of
-  /// their making. Each has the fracture, its old tip x, y, and its `state`: "grows", "crosses" or "ends at" another
-  /// fracture `met`, with the `margin` of crossing, or "ends" without room.
+  /// Extensions of the complete step: tip x, y, `length`, and in J/m `released`, `fracture_energy` and `lost_energy`.
+  ///
+  /// The energies are the length times the means of G = K_hoop^2/E' and G_c = toughness^2/E' before the extension and
+  /// at its new tip, at the load of the end of the step; the values before it, if the new tip has no K. The growth of a
+  /// fracture in the step is unstable if K/toughness rises in any extension; then the difference of both energies is
+  /// lost. An extension that crosses a fracture has a row on each side.
+  const estimate::StateTable& extensions() const { return extensions_; }
+  /// Growth in the step: `added_by_growth`, integrals over new faces at their begin, by name, and `tips` in the order
+  /// of their extensions. Each has the fracture, its old tip x, y, and its `state`: "grows", "crosses" or "ends at"
+  /// another fracture `met`, with the `margin` of crossing, or "ends" without room.
   nlohmann::json growth() const;
 
  private:
@@ -53,7 +70,9 @@ class Tips {
     Point x, direction;
     Real ratio;     ///< intensity/toughness
     Real crossing;  ///< above 0: the tip crosses the fracture that it meets
-    int single;     ///< single fracture
+    int fracture;   ///< single fracture
+    Real G_c;       ///< N/m
+    Real G() const { return ratio > 0 ? ratio * ratio * G_c : 0; }
   };
   struct Event {
     std::string fracture, met;
@@ -66,6 +85,8 @@ class Tips {
     Real angle = 0, turned = 0;  ///< to the direction of growth when last computed; last turn, rad
     int n_turns = 0;
     bool is_settled = false;
+    Tip before = {};                ///< tip that grew
+    std::optional<Tip> after = {};  ///< new tip; empty before the next round, and without K
   };
   std::vector<Tip> tips_of(Model& model) const;
   void note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made, base::Log& log);
@@ -73,6 +94,8 @@ class Tips {
   void warn_about(const Segment& one, base::Log& log) const;
   bool may_grow(const Point& tip) const;
   void extend(const Growth& growth, const std::vector<Tip>& tips);
+  void measure(const Growth& growth, const std::vector<Tip>& tips);
+  void complete(const Model& model, base::Log& log);
 
   Real begin_ = 0;
   bool in_step_ = false;
@@ -83,6 +106,7 @@ class Tips {
   std::vector<Tip> growing_;       ///< of its extensions
   std::vector<Event> events_;      ///< of the step
   std::map<std::string, Real> added_;
+  estimate::StateTable extensions_;  ///< of the complete step
   std::vector<std::size_t> turned_;  ///< segments of its turns
 };
 

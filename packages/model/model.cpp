@@ -139,6 +139,7 @@ Model::Draft Model::drafted(Scene scene, const std::string& unconstrained) const
   Draft draft{std::move(scene), mesh::without_regions(whole_mesh_, draft.scene.excavated()), {}};
   const auto& mesh = *draft.mesh;
   check_ends(draft.scene, mesh);
+  check_growth(draft.scene, mesh);
   base::collectively(comm, [&] { draft.scene.own_joints = physics::own_joints(draft.scene, mesh); });
   base::collectively(comm, [&] {
     draft.modules = make_modules(draft.scene, mesh);

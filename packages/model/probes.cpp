@@ -3,6 +3,7 @@
 #include "base/over_ranks.hpp"
 #include "base/text.hpp"
 #include "base/xml.hpp"
+#include "model/growth_energies.hpp"
 
 #include <fmt/ranges.h>
 
@@ -103,6 +104,7 @@ struct Probes::Known {
       if (output.entity == Entity::fracture_face)
         output.values.assign(std::size_t(mesh.n_owned_fracture_faces) * output.n_components, 0);
     if (!mesh.fracture_names.empty()) numbers = fracture_table(mesh, outputs, Grouping::sets);
+    if (model.scene().growth) GrowthEnergies(mesh, {}).append(mesh, Grouping::sets, numbers);
   }
 
   template <class List>

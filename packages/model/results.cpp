@@ -89,6 +89,7 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
     json_["restarts"].push_back(model_.time());
     n_steps_ = static_cast<int>(json_["steps"].size());
   }
+  if (model_.scene().growth) grown_.emplace(mesh, earlier ? earlier->journal : std::vector<json>());
   if (!earlier) add_initial_state();
   if (const auto& rule = model_.scene().output.events; rule && !mesh.fracture_names.empty()) {
     catalogue_.emplace(mesh, rule->rate, model_.time(), model_.system().outputs(model_.state()));
@@ -127,6 +128,7 @@ void Results::add_initial_state() {
     if (!known) return;
     add_fractures(initial, system.outputs(model_.state()));
     initial.update(reactions());
+    initial["mesh"] = json_["mesh"];
   } catch (const Error&) {  // loads without a value at the start, perhaps with values in the steps
     return;
   }
@@ -177,7 +179,7 @@ std::vector<json> Results::journal(int begin) const {
 
 json Results::common_entries() const {
   json entries = json::object();
-  for (const char* name : {"units", "tables", "initial"})
+  for (const char* name : {"units", "tables", "initial", "single_fractures"})
     if (json_.contains(name)) entries[name] = json_[name];
   return entries;
 }
@@ -207,7 +209,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
                {"cuts", report.cuts},
                {"converged", report.converged}};
   if (!taken.stage.empty()) step["stage"] = taken.stage;
-  if (!taken.growth.empty()) step["growth"] = taken.growth;
+  step.update(taken.growth);
   if (model_.scene().time.chooses_steps()) {
     step["length"] = report.time - taken.begin;
     step["rejected"] = taken.n_rejected;
@@ -232,11 +234,13 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
     for (const auto& warning : P::Warnings::of_state(model_.setting(), ends_, outputs))
       if (reported_.insert(warning).second) warnings_.push_back(warning);
   });
+  if (grown_) grown_->add(taken.extensions);
   add_fractures(step, outputs);
   add_error_bounds(step["fractures"], outputs);
   step.update(reactions());
   step.update(tables_->of_state(outputs));
   if (!tables_->units().empty()) json_["tables"] = tables_->units();
+  if (grown_) add_growth(step, taken.extensions);
   if (catalogue_) step["events"] = catalogue_->add(model_.mesh(), report.time, outputs);
   add_probes(step, outputs);
   if (estimator_ && (!goals_ || model_.scene().output.error_estimate || goals_->need(last))) {
@@ -253,9 +257,19 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   add(step);
   ++n_steps_;
   if (last || fields_are_due(taken)) write_fields(report.time, outputs);
-  const auto rest = std::max<std::chrono::steady_clock::duration>(std::chrono::seconds(5), 20 * write_took_);
-  if (base::on_any_rank(*model_.mesh().comm, std::chrono::steady_clock::now() - last_write_ > rest)) write_json();
+  const auto rest = std::max<std::chrono::steady_clock::duration>(std::chrono::seconds(5), 20 * write_.took);
+  if (base::on_any_rank(*model_.mesh().comm, std::chrono::steady_clock::now() - write_.end > rest)) write_json();
   return counts_of_classes(*model_.mesh().comm, outputs);
+}
+
+/// Adds the size of the mesh and the table of extensions.
+void Results::add_growth(json& step, const estimate::StateTable& extensions) {
+  step["mesh"] = mesh_summary(model_.mesh())["mesh"];
+  auto& units = json_["tables"]["growth"];
+  for (const auto& column : extensions.columns) units[column.name] = column.unit;
+  if (extensions.fractures.empty()) return;
+  step["growth"] = {{"fracture", extensions.fractures}};
+  for (const auto& column : extensions.columns) step["growth"][column.name] = column.values;
 }
 
 /// Adds the values of sets and, if present, of single fractures.
@@ -266,6 +280,10 @@ void Results::add_fractures(json& step, const std::vector<OutputField>& outputs)
   sets_ = fracture_table(mesh, outputs, Grouping::sets);
   const bool same = mesh.single_fractures.size() == mesh.fracture_names.size();
   singles_ = same ? sets_ : fracture_table(mesh, outputs, Grouping::singles);
+  if (grown_) {
+    grown_->append(mesh, Grouping::sets, sets_);
+    grown_->append(mesh, Grouping::singles, singles_);
+  }
   step["fractures"] = by_sets(mesh, sets_);
   if (mesh.comm->getRank() == 0) step["single_fractures"] = by_singles(singles_);
   json_["units"] = units(sets_);
@@ -293,8 +311,9 @@ void Results::follow_change() {
   n_changes_ = model_.n_changes();
   probes_.update_places();
   if (estimator_) estimator_.emplace(make_error_estimator(model_, ends_.back()));
-  if (const auto& accuracy = model_.scene().accuracy) {
-    goals_.emplace(*estimator_, accuracy->functionals());
+  const auto& accuracy = model_.scene().accuracy;
+  if (accuracy) goals_.emplace(*estimator_, accuracy->functionals());
+  if (accuracy || grown_) {
     json_.update(mesh_summary(model_.mesh()));
     json_["blocks"] = block_summary(model_.system());
     if (fractures_) add_intersections();

@@ -6,6 +6,7 @@
 #include "io/vtu.hpp"
 #include "model/error_estimates.hpp"
 #include "model/event_catalogue.hpp"
+#include "model/growth_energies.hpp"
 #include "model/probes.hpp"
 #include "model/state_tables.hpp"
 #include "model/steps.hpp"
@@ -74,6 +75,7 @@ class Results {
  private:
   nlohmann::json reactions();
   void add_fractures(nlohmann::json& step, const std::vector<assembly::OutputField>& outputs);
+  void add_growth(nlohmann::json& step, const estimate::StateTable& extensions);
   void add(const nlohmann::json& step);
   void follow_change();
   void begin_stage(const std::string& name, Real time);
@@ -99,6 +101,7 @@ class Results {
   int n_changes_;  // changes of the model up to the last step
   std::optional<EventCatalogue> catalogue_;
   std::optional<StateTables> tables_;
+  std::optional<GrowthEnergies> grown_;
   std::optional<io::SeriesFiles> series_;       // files of the probes
   std::vector<FractureColumn> sets_, singles_;  // of the last step
   std::map<std::string, std::string> units_;    // units of reactions()
@@ -108,8 +111,10 @@ class Results {
   std::set<std::string> reported_;
   std::vector<std::string> warnings_;
   std::map<std::string, Real> error_bounds_;
-  std::chrono::steady_clock::time_point last_write_;
-  std::chrono::steady_clock::duration write_took_{};
+  struct {
+    std::chrono::steady_clock::time_point end;
+    std::chrono::steady_clock::duration took{};
+  } write_;  // last one of results.json
 };
 
 /// Writes a results.json with the reason why a run did not begin. With `only_replace`, it only replaces an existing

@@ -176,8 +176,8 @@ void Results::write_json() {
     if (!events.empty()) io::write_file(directory_ + "/events.csv", events);
   });
   n_written_ = static_cast<int>(json_["steps"].size());
-  last_write_ = std::chrono::steady_clock::now();
-  write_took_ = last_write_ - begin;
+  write_.end = std::chrono::steady_clock::now();
+  write_.took = write_.end - begin;
 }
 
 void Results::finish(const std::string& status, const std::string& reason) {

@@ -205,12 +205,17 @@ StepTaken take_step(Model& model, Steps& steps, Adaptation& adaptation, Tips& ti
     if (!taken.report.converged || taken.report.stopped) return taken;
     mesh::MeshChange change{adaptation.cells_for_step(model, taken.begin)};
     if (change.is_none()) change = tips.for_step(model, taken.begin, log);
-    taken.growth = tips.growth();
-    if (change.is_none()) return taken;
+    if (change.is_none()) {
+      taken.extensions = tips.extensions();
+      taken.growth = tips.growth();
+      return taken;
+    }
     steps.take_back();
     tips.apply(model, change, log);
-    log.info("t = {:.6g}: the step to {:.6g} is repeated on a mesh of {} cells", taken.begin, taken.end,
-             model.mesh().n_global_cells);
+    const auto n = change.turns.size();
+    log.info("t = {:.6g}: the step to {:.6g} is repeated on a mesh of {} cells{}", taken.begin, taken.end,
+             model.mesh().n_global_cells,
+             n == 0 ? "" : fmt::format(", after {} of extensions", base::counted(n, "turn")));
   }
 }
 

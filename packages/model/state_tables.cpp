@@ -34,7 +34,7 @@ json StateTables::of_state(const std::vector<assembly::OutputField>& outputs) {
 }
 
 std::vector<std::string> names_of_tables() {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {"growth"};
   physics::for_each_physics([&]<physics::HasTables P>(P) { names.push_back(with_underscores(P::Tables::name())); });
   return names;
 }

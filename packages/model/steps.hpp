@@ -1,6 +1,7 @@
 // Time steps of a run: prescribed by the scene or adaptive.
 #pragma once
 
+#include "estimate/state_table.hpp"
 #include "model/model.hpp"
 #include "solve/step_control.hpp"
 
@@ -15,14 +16,15 @@ namespace sprekk::model {
 /// Accepted step.
 struct StepTaken {
   solve::StepReport report = {};
-  Real begin = 0, end = 0;         ///< planned begin and end, s
-  bool at_time = true;             ///< ends at a time given by the scene
-  std::string stage = "";          ///< stage of the step; empty before the first stage
-  bool begins_stage = false;       ///< the model changed before this step
-  fields::StepErrors errors = {};  ///< relative errors of adaptive steps
-  int n_rejected = 0;              ///< rejected attempts
-  int rejected_iterations = 0;     ///< Newton iterations in rejected attempts
-  std::string warning = "";        ///< set if the error exceeds its tolerance
+  Real begin = 0, end = 0;               ///< planned begin and end, s
+  bool at_time = true;                   ///< ends at a time given by the scene
+  std::string stage = "";                ///< stage of the step; empty before the first stage
+  bool begins_stage = false;             ///< the model changed before this step
+  fields::StepErrors errors = {};        ///< relative errors of adaptive steps
+  int n_rejected = 0;                    ///< rejected attempts
+  int rejected_iterations = 0;           ///< Newton iterations in rejected attempts
+  std::string warning = "";              ///< set if the error exceeds its tolerance
+  estimate::StateTable extensions = {};  ///< of fractures, as in Tips::extensions()
   /// Growth of fractures, see Tips::growth()
   nlohmann::json growth = nlohmann::json::object();
 };

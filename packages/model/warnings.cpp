@@ -82,6 +82,16 @@ std::vector<Real> looked_at(const Scene& scene) {
   return times;
 }
 
+std::vector<std::string> toughness_without_growth(const Scene& scene) {
+  std::vector<std::string> all;
+  for (const auto& [name, fracture] : scene.fractures)
+    if (fracture.toughness && !scene.growth)
+      all.push_back(physics::implausible(fmt::format("{}: Sprekk > Fractures > {} > \"toughness\"", scene.origin, name),
+                                         "is given, and the scene has no section \"Growth\"",
+                                         "the fracture does not grow", "add the section with a \"segment\""));
+  return all;
+}
+
 }  // namespace
 
 std::vector<std::string> Model::warnings() const {
@@ -95,6 +105,7 @@ std::vector<std::string> Model::warnings() const {
   physics::for_each_physics([&]<physics::HasWarnings P>(P) { add(P::Warnings::of_input(setting(), times)); });
   add(steps_across_knots(scene_));
   add(stages_after_the_end(scene_));
+  add(toughness_without_growth(scene_));
   return all;
 }
 

@@ -100,7 +100,7 @@ def write_scene(folder, case):
 
 def meeting(steps):
     """Returns the event in which the crack has met the fracture; None if it has not reached it."""
-    return next((one for step in steps for one in step.get("growth", {}).get("extensions", []) if one["state"] in ("crosses", "ends at")), None)
+    return next((one for step in steps for one in step.get("tips", []) if one["state"] in ("crosses", "ends at")), None)
 
 
 def exact_margin(angle, s1, s3, strength, friction, cohesion):

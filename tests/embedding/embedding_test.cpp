@@ -188,7 +188,7 @@ TEST(SceneInCpp, IsCheckedLikeOneFromAFile) {
       {"unknown name",
        [](auto& s) { s.boundary_conditions["north"].displacement[1] = base::Expression("velocity*t"); }},
       {"not on t", [](auto& s) { s.materials["rock"].E = base::Expression("1e9*(1 + t)"); }},
-      {"it may depend on x, y, z, not on t",
+      {"it may depend on the position, not on t",
        [](auto& s) { s.bulk.initial_stress.assign(4, base::Expression("-1e6*t")); }}};
   for (const auto& [words, make] : mistakes) {
     auto scene = column({"quadrilateral", 1});

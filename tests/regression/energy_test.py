@@ -6,6 +6,9 @@ import math
 import growth_test
 from program import ProgramTest, main
 
+from perf.cohesive import cohesive
+from perf.common import scene_file
+
 ENERGY = ["Output.energy=true", "Output.vtu=false"]
 
 
@@ -67,7 +70,7 @@ class Energy(ProgramTest):
     def test_beam(self):
         """While the front advances, the work of the ends is the increase of elastic and fracture energy. The latter agrees
         with the length of linear fracture mechanics."""
-        (self.folder / "beam.xml").write_text(BEAM)
+        scene_file.save(beam([64, 10], 4e6, 2), self.folder / "beam.xml", "Double cantilever beam.")
         steps, energy = self.energies(self.folder / "beam.xml")
 
         def change(of):
@@ -79,6 +82,52 @@ class Energy(ProgramTest):
         self.assertLess(abs(energy["unassigned"]), 1e-9 * given)
         length = [(3 * 32e9 * 0.1**3 * delta**2 / (16 * 30)) ** 0.25 for delta in (1e-4, 2e-4)]  # a + 0.673 h
         self.expect(fracture, 30 * (length[1] - length[0]), 0.01)
+
+    def test_steps_of_the_beam(self):
+        """The work on the fracture is fracture energy and t . jump/2 of the bonds; the error of the work is of second order in
+        the step. The zone has seven faces, so that they open without jumps."""
+        scene_file.save(beam([40, 4], 3e6, 1), self.folder / "beam.xml", "Double cantilever beam.")
+        bonds = ["Probes.bonds.line={0.005, 0, 0.395, 0}", "Probes.bonds.points=40", "Probes.bonds.outputs={plastic jump local, traction local}"]
+        defects = []
+        for n in (10, 20, 40):
+            steps, energy = self.energies(self.folder / "beam.xml", f"Time.steps={n}", *bonds)
+            rows = list(csv.reader((self.folder / "out/probes/bonds.csv").open()))[-40:]
+            stored = sum(0.01 * float(row[4 + k]) * float(row[6 + k]) / 2 for row in rows for k in (0, 1))
+            self.assertGreater(stored, 0.1)
+            defects.append(abs((steps[-1]["fractures"]["growing"]["fracture_energy"] + stored) / -energy["work"]["traction"] - 1))
+        self.assertLess(defects[0], 0.012)
+        for coarse, fine in zip(defects, defects[1:]):
+            self.assertLess(fine, 0.4 * coarse)
+
+    def expect_same(self, found, expected, factor=1, tolerance=1e-10):
+        """Energies of both steps, over the factor, agree within the tolerance times the largest one."""
+        def flat(step):
+            return [*step["energy"]["work"].values(), step["energy"]["elastic"], step["energy"]["unassigned"],
+                    *(one[key] for one in step["fractures"].values() for key in ("fracture_energy", "friction_energy") if key in one)]
+        largest = max(map(abs, flat(expected)))
+        self.assertGreater(largest, 0)
+        for one, other in zip(flat(found), flat(expected), strict=True):
+            self.assertAlmostEqual(one / factor, other, delta=tolerance * largest)
+
+    def test_beam_in_3d(self):
+        """A beam in plane strain has the energies of 2D times its depth, except for its other bubbles of faces, on one and two ranks."""
+        for name, depth in (("plane", ()), ("body", (0.1,))):
+            scene_file.save(beam([20, 4], 3e6, 1, depth), self.folder / f"{name}.xml", "Double cantilever beam.")
+        plane = self.energies(self.folder / "plane.xml", "Time.steps=10")[0][-1]
+        one, two = (self.energies(self.folder / "body.xml", "Time.steps=10", ranks=ranks)[0][-1] for ranks in (1, 2))
+        self.expect_same(one, plane, 0.1, 3e-3)
+        self.expect_same(two, one)
+
+    def test_friction_in_3d(self):
+        """A cube, sheared along one axis: 0.18 times the path of slip, on one and two ranks; as the square 1 m deep, except for its bubbles of faces."""
+        plane = self.energies("verification/cyclic_2d.xml", "Time.steps=8")[0][-1]
+        steps = [self.energies("verification/cyclic_3d.xml", "Time.steps=8", ranks=ranks)[0] for ranks in (1, 2)]
+        self.expect_same(steps[1][-1], steps[0][-1])
+        slips = [(0.0, 0.0)] + [step["fractures"]["fracture"]["mean_plastic_jump"]["local"][1:] for step in steps[0]]
+        last = steps[0][-1]
+        self.expect(last["fractures"]["fracture"]["friction_energy"], 0.18 * sum(map(math.dist, slips, slips[1:])))
+        self.expect(last["energy"]["work"]["traction"], plane["energy"]["work"]["traction"], 1e-3)
+        self.assertLess(abs(last["energy"]["unassigned"]), 1e-9 * last["energy"]["work"]["supports"])
 
     def test_injection(self):
         """Pressure times injected volume is the work of the wells, and except for dissipation and compression that on the
@@ -126,59 +175,18 @@ def intervals(steps):
     return zip(steps, (b - a for a, b in zip([0.0] + [step["time"] for step in steps], (step["time"] for step in steps))))
 
 
-BEAM = """<ParameterList name="Sprekk">
-  <ParameterList name="Mesh">
-    <Parameter name="cell" type="string" value="quadrilateral"/>
-    <Parameter name="order" type="int" value="2"/>
-    <Parameter name="lower corner" type="Array(double)" value="{0, -0.1}"/>
-    <Parameter name="upper corner" type="Array(double)" value="{0.4, 0.1}"/>
-    <Parameter name="cells" type="Array(int)" value="{64, 10}"/>
-    <ParameterList name="fractures">
-      <ParameterList name="growing">
-        <Parameter name="lower corner" type="Array(double)" value="{0, 0}"/>
-        <Parameter name="upper corner" type="Array(double)" value="{0.4, 0}"/>
-      </ParameterList>
-    </ParameterList>
-  </ParameterList>
-  <ParameterList name="Materials">
-    <ParameterList name="rock">
-      <Parameter name="type" type="string" value="elastic"/>
-      <Parameter name="Young's modulus" type="double" value="30e9"/>
-      <Parameter name="Poisson's ratio" type="double" value="0.25"/>
-    </ParameterList>
-    <ParameterList name="joint">
-      <Parameter name="type" type="string" value="joint"/>
-      <Parameter name="friction coefficient" type="double" value="0.6"/>
-      <Parameter name="bond" type="string" value="linear softening"/>
-      <Parameter name="cohesion" type="double" value="20e6"/>
-      <Parameter name="tensile strength" type="double" value="4e6"/>
-      <Parameter name="fracture energy" type="double" value="30"/>
-      <Parameter name="shear fracture energy" type="double" value="750"/>
-    </ParameterList>
-  </ParameterList>
-  <ParameterList name="Bulk"><Parameter name="material" type="string" value="rock"/></ParameterList>
-  <ParameterList name="Fractures">
-    <ParameterList name="growing">
-      <Parameter name="material" type="string" value="joint"/>
-      <Parameter name="unbroken" type="string" value="x > 0.1"/>
-    </ParameterList>
-  </ParameterList>
-  <ParameterList name="Boundary conditions">
-    <ParameterList name="ends">
-      <Parameter name="boundary" type="string" value="west"/>
-      <Parameter name="displacement" type="Array(string)" value="{free, (y > 0 ? 1 : -1)*1e-4*t}"/>
-    </ParameterList>
-    <ParameterList name="east">
-      <Parameter name="boundary" type="string" value="east"/>
-      <Parameter name="displacement" type="Array(double)" value="{0, 0}"/>
-    </ParameterList>
-  </ParameterList>
-  <ParameterList name="Time">
-    <Parameter name="end" type="double" value="1"/>
-    <Parameter name="steps" type="int" value="20"/>
-  </ParameterList>
-</ParameterList>
-"""
+def beam(cells, strength, order, depth=()):
+    """Scene of a double cantilever beam of bonded arms. `depth` (d,): hexahedra in plane strain."""
+    none, is_3d = [0.0] * len(depth), bool(depth)
+    sides = {name: {"boundary": name, "displacement": ["free", "free", 0.0]} for name in ("bottom", "top") if is_3d}
+    return {"Mesh": {"cell": "hexahedron" if is_3d else "quadrilateral", "order": order, "lower corner": [0.0, -0.1, *none], "upper corner": [0.4, 0.1, *depth],
+                     "cells": [*cells, *(1 for _ in depth)], "fractures": {"growing": {"lower corner": [0.0, 0.0, *none], "upper corner": [0.4, 0.0, *depth]}}},
+            "Materials": cohesive.rock(strength, 30.0), "Bulk": {"material": "granite"},
+            "Fractures": {"growing": {"material": "bonded joint", "unbroken": "x > 0.1"}},
+            "Boundary conditions": {"ends": {"boundary": "west", "displacement": ["free", "(y > 0 ? 1 : -1)*1e-4*t", *("free" for _ in depth)]},
+                                    "east": {"boundary": "east", "displacement": [0.0, 0.0, *none]}, **sides},
+            "Time": {"end": 1.0, "steps": 20}}
+
 
 if __name__ == "__main__":
     main()

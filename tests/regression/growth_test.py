@@ -45,6 +45,34 @@ class Growth(ProgramTest):
             a += 1e-4
         return a
 
+    @staticmethod
+    def exact_energy(x):
+        """Integral of K_c^2/E' over the new length up to x."""
+        return 1e12 / 32e9 * ((1 + 4 * (x - 0.6)) ** 3 - 1) / 12
+
+    def test_lost_energy(self):
+        """At the load s, growth from a to b releases the integral of 2 W s^2 tan(pi x/2W)/E'. A constant toughness dissipates less: the rest is lost, in results, probes and tables."""
+        sets = [*(one for one in self.STRAIGHT if "toughness" not in one and "schedule" not in one), "Growth.extensions per step=6", "Fractures.crack.toughness=1e6",
+                "Time.schedule={1.5, 1.50001}", "Probes.crack.fracture=crack", "Probes.crack.outputs={area, fracture_energy, lost_energy}"]
+        words = [word for one in sets for word in ("--set", one)]
+        errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *words)[1]
+        step = self.results()["steps"][0]
+        (x, _, _), = tips(step)
+        self.assertAlmostEqual(x, 0.9, delta=0.01)
+        released = 0.75e6**2 * 16 / (math.pi * 32e9) * math.log(math.cos(0.6 * math.pi / 4) / math.cos(x * math.pi / 4))
+        crack, growth = step["fractures"]["crack"], step["growth"]
+        self.assertAlmostEqual(sum(growth["released"]) / released, 1, delta=0.02)
+        self.assertAlmostEqual(crack["fracture_energy"], 1e12 / 32e9 * 0.3, delta=1e-6)
+        self.assertAlmostEqual(crack["lost_energy"], released - 1e12 / 32e9 * 0.3, delta=0.02 * released)
+        self.assertIn(f'unstable growth of "crack" by 0.3 m loses {crack["lost_energy"]:.4g} J/m', errors)
+        rows = [row.split(",") for row in (self.folder / "out/probes/crack.csv").read_text().splitlines()]
+        self.assertEqual(rows[0][1:], ["area [m]", "fracture_energy [J/m]", "lost_energy [J/m]"])
+        for found, key in zip(rows[2][1:], ("area", "fracture_energy", "lost_energy")):  # after the initial state
+            self.assertAlmostEqual(float(found), crack[key], delta=1e-9 * crack[key])
+        table = (self.folder / "out/growth.csv").read_text().splitlines()
+        self.assertEqual(table[0], "fracture,time [s],fracture_energy [J/m],length [m],lost_energy [J/m],released [J/m],x [m],y [m]")
+        self.assertEqual(sum(row.startswith("crack,1.5,") for row in table), 6)
+
     def test_straight_growth(self):
         """A toughness that increases with the length makes the growth stable: the length follows the load, also after a restart."""
         for step in self.run_scene("growth/edge_crack_2d.xml", *self.STRAIGHT)["steps"]:
@@ -54,20 +82,31 @@ class Growth(ProgramTest):
             self.assertGreater(x, exact - 0.03)
             self.assertLess(x, exact + 0.05 + 0.03)
             self.assertLess(K, step["stress_intensity"]["toughness"][0])
+            crack, (single,) = step["fractures"]["crack"], step["single_fractures"]["area"]
+            self.assertAlmostEqual(crack["fracture_energy"], self.exact_energy(x), delta=1e-6 + 0.01 * self.exact_energy(x))
+            self.assertAlmostEqual(single, crack["area"], delta=1e-12)
+            self.assertEqual(crack["lost_energy"], 0)
         self.assertGreater(x, 0.9)
+        table = (self.folder / "out/growth.csv").read_text()
         sets = [word for one in [*self.STRAIGHT, "Output.checkpoints.steps=1"] for word in ("--set", one)]
         self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--set", "Time.schedule={1.4, 1.7, 2}")
         self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--restart")
         self.assertLess(math.dist(self.last_tip("part"), (x, y)), 1e-6)
+        part = self.results("part")
+        self.assertAlmostEqual(part["steps"][-1]["fractures"]["crack"]["fracture_energy"], crack["fracture_energy"], delta=1e-9 * crack["fracture_energy"])
+        self.assertAlmostEqual(part["single_fractures"][0]["area"], 0.6, delta=1e-12)
+        self.assertEqual(len((self.folder / "part/growth.csv").read_text().splitlines()), len(table.splitlines()))
 
     def test_ranks(self):
         """The same path on one and on three ranks."""
-        tip = {}
+        tip, energy = {}, {}
         for ranks in (1, 3):
             self.run_scene("growth/edge_crack_2d.xml", *self.STRAIGHT, "Growth.segment=0.1", "Time.schedule={1.7}", ranks=ranks)
             tip[ranks] = self.last_tip()
+            energy[ranks] = self.results()["steps"][-1]["fractures"]["crack"]["fracture_energy"]
         self.assertGreater(tip[1][0], 0.69)
         self.assertLess(math.dist(tip[1], tip[3]), 1e-6)
+        self.assertAlmostEqual(energy[1], energy[3], delta=1e-6 * energy[1])
 
     INJECTION = [*(one for one in STRAIGHT if "toughness" not in one and "schedule" not in one),
                  "Boundary conditions.top.traction={0, 0}", "Boundary conditions.bottom.traction={0, 0}", "Materials.rock.permeability={0}",
@@ -97,8 +136,8 @@ class Growth(ProgramTest):
             a = 0.6
             while volume(a, 1e6 / math.sqrt(2 * W * math.tan(math.pi * a / 2 / W))) < crack["fluid_volume"]:
                 a += 1e-4
-            added["area"] += step.get("growth", {}).get("added", {}).get("area", 0)
-            added["fluid_volume"] += step.get("growth", {}).get("added", {}).get("fluid_volume", 0)
+            added["area"] += step.get("added_by_growth", {}).get("area", 0)
+            added["fluid_volume"] += step.get("added_by_growth", {}).get("fluid_volume", 0)
             self.assertAlmostEqual(added["area"], x - 0.6, delta=1e-9)
             self.assertAlmostEqual(added["fluid_volume"], residual * (x - 0.6), delta=1e-9 * residual)
             mass = crack["fluid_volume"] * (1 + 4.5e-10 * crack["mean_fracture_pressure"])  # of the reference density
@@ -145,7 +184,9 @@ class Growth(ProgramTest):
 
     def test_refused_scenes(self):
         for entries, text in ((["Mesh.cell=quadrilateral"], "must be triangle"), (["Mesh.refinements=1"], "must be 0"),
-                              (["Output.events.rate=1"], "must be absent"), (["Growth.faces=1"], "must be at least 2")):
+                              (["Output.events.rate=1"], "must be absent"), (["Growth.faces=1"], "must be at least 2"),
+                              (["Growth.segment=40"], '"segment": is 40 m, must be less than the smallest side of the mesh, 40 m'),
+                              (["Fractures.flaw.toughness=1e6*(0.5 - x)"], 'is -500000 at (1, 0, 0), must be positive')):
             sets = [word for one in entries for word in ("--set", one)]
             self.assertIn(text, self.call("check", self.scene(WINGS), *sets, expect=1)[1])
         for scene, entry, text in (("growth/edge_crack_2d.xml", "plastic jump={0.1}", "plastic jump\": not available with a \"toughness"),
@@ -154,6 +195,11 @@ class Growth(ProgramTest):
             self.assertIn(text, errors)
         errors = self.call("check", self.scene("growth/edge_crack_2d.xml"), "--set", "Growth.segment=0.1", expect=1)[1]
         self.assertIn("Fractures: none has a \"toughness\"", errors)
+
+    def test_toughness_without_growth(self):
+        for entry, warned in (("Growth.segment=0.1", False), ("Output.vtu=false", True)):
+            out, warnings = self.call("check", self.scene("growth/edge_crack_2d.xml"), "--set", "Fractures.crack.toughness=1e6", "--set", entry)
+            self.assertEqual("the fracture does not grow; add the section" in warnings, warned, warnings)
 
 
 if __name__ == "__main__":

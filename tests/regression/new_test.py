@@ -6,7 +6,7 @@ import subprocess
 
 from program import ROOT, ProgramTest, main
 
-TOPICS = {"first_scene", "direct_shear", "network", "injection", "stimulation", "discs", "doublet", "gallery", "slope", "point_test"}
+TOPICS = {"first_scene", "direct_shear", "network", "injection", "stimulation", "discs", "doublet", "gallery", "growth", "slope", "point_test"}
 
 
 class New(ProgramTest):
@@ -95,6 +95,16 @@ class New(ProgramTest):
         """From 150 degrees C, with water of 50."""
         fault = self.run_topic("doublet")["fractures"]["fault"]
         self.assertTrue(273.15 + 50 < fault["mean_fracture_temperature"] < 273.15 + 100)
+
+    def test_growth_turns_to_the_compression(self):
+        """Both ends grow; the tips are near the line through the notch along the largest compression."""
+        step = self.run_topic("growth")
+        crack, tips = step["fractures"]["notch"], step["stress_intensity"]
+        self.assertGreater(crack["area"], 3)
+        self.assertEqual(crack["fraction_open"], 1)
+        for x, y, direction_x, direction_y in zip(tips["x"], tips["y"], tips["kink_x"], tips["kink_y"]):
+            self.assertGreater(x * y, 0)
+            self.assertTrue(0.4 < direction_y / direction_x < 1.6, (direction_x, direction_y))
 
     def test_gallery_is_excavated(self):
         roof = self.run_topic("gallery")["fractures"]["roof"]

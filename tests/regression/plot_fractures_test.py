@@ -178,6 +178,41 @@ class Fractures(PlotTest):
         x, y = line.get_data()
         self.assertGreaterEqual(ax.get_ylim()[1], (1 - 1e-9) * np.interp(0.5 * x[-1], x, y))
 
+    def test_growth_on_a_path(self):
+        """The fracture of each step in the colour of its time, the first one on top; the region is that of the fracture."""
+        from growth_test import Growth
+        sets = [one for one in Growth.STRAIGHT if "vtu" not in one and "schedule" not in one]
+        steps = self.run_scene("growth/edge_crack_2d.xml", *sets, "Time.schedule={1.4, 2, 2.6}")["steps"]
+        made = self.figures("out")
+        self.expect_labels(made["growth"], "time (s)", "x (m)")
+        self.expect_labels(made["series"], "length (m)", "fracture energy (J/m)")
+        lines = made["growth"].axes[0].collections[-3:]
+        ends = [max(path.vertices[:, 0].max() for path in one.get_paths()) for one in lines]
+        for end, step in zip(ends, reversed(steps)):
+            self.assertAlmostEqual(end, step["fractures"]["crack"]["area"], delta=1e-5)
+        self.assertEqual(len({tuple(one.get_color()[0]) for one in lines}), 3)
+        self.assertIn("region of the fractures", made["bulk"]._suptitle.get_text())
+        limits = made["bulk"].axes[0].get_ylim()
+        self.assertTrue(-2 < limits[0] < 0 < limits[1] < 2, limits)
+        self.assertNotIn("region", self.figures("out", "--whole")["bulk"]._suptitle.get_text())
+
+    def test_growth_of_bonded_faces_in_3d(self):
+        """Faces have the time of the first step in which their bond is lost; others are grey."""
+        from energy_test import beam
+        from perf.common import scene_file
+        scene_file.save(beam([20, 4], 3e6, 1, (0.1,)), self.folder / "beam.xml", "Double cantilever beam.")
+        content = self.run_scene(str(self.folder / "beam.xml"), "Time.steps=4")
+        import growth
+        times = {}
+        with mock.patch.object(growth.Network, "draw", lambda view, ax, colours: times.update(times=view.data.get(growth.TIME))):
+            self.expect_labels(self.figures("out")["growth"], "time (s)")
+        found = times["times"]
+        lost = found[np.isfinite(found)]
+        self.assertTrue(0 < len(lost) < 20)
+        self.assertEqual(max(lost), 1)
+        self.assertGreater(len(set(lost.tolist())), 2)
+        self.assertLess(abs(0.02 * 0.1 * len(lost) - content["steps"][-1]["fractures"]["growing"]["area_broken"] - 0.1 * 0.1), 0.004)
+
     def test_slip_tendency(self):
         """Shear over compression; NaN on open faces, in tension and for round-off; zero if the shear is round-off."""
         traction = np.array([[-2.0, 1, 0], [-2, 0, -3], [0, 0, 0], [1, 1, 0], [-1e-14, 1, 0], [-5, 1e-10, 0]])

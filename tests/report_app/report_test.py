@@ -122,7 +122,7 @@ class Pages(ReportTest):
             self.assertEqual(table.columns[1], f"energy ({unit})")
             rows = dict(table.rows)
             self.assertEqual(rows["work on fractures"], "0.9")
-            self.assertEqual((rows["– dissipated by slip"], rows["– fracture energy of bonds"]), ("0.3", "0.1"))
+            self.assertEqual((rows["– dissipated by slip"], rows["– fracture energy"]), ("0.3", "0.1"))
             self.assertEqual((rows["work of the fluid on the rock"], rows["fluid: fracture flow"]), ("0.1", "−0.02"))
             self.assertEqual((rows["work of temperatures, from 0 K"], rows["released by extension or excavation"]), ("0.3", "0.04"))
             self.assertNotIn("unassigned", rows)
@@ -404,6 +404,33 @@ class Words(ReportTest):
         (table,), _ = figures.of_run(content, None, [])
         self.assertEqual([row[0] for row in table.rows], ["set"])
 
+    def test_growth(self):
+        """Lengths at start and end, extensions by step and fracture, and slip of fractures that only open."""
+        growth = {"fracture": [0, 0, 1], "x": [1.1, -1.1, 5.2], "y": [0.2, -0.2, 0.0], "length": [0.1, 0.1, 0.2],
+                  "released": [9.0, 9.0, 30.0], "fracture_energy": [8.0, 8.0, 16.0], "lost_energy": [0.0, 0.0, 14.0]}
+        singles = {"max_slip": [3e-4, 0.0], "mean_slip": [2e-4, 0.0], "max_opening": [1e-3, 0.0], "fraction_has_slipped": [0, 0],
+                   "fraction_open": [1.0, 0.0], "fracture_energy": [16.0, 16.0], "lost_energy": [0.0, 14.0], "area": [2.2, 1.2]}
+        content = {
+            "mesh": {"dimension": 2, "cells": 200, "fracture_faces": 40},
+            "initial": {"mesh": {"cells": 100}},
+            "status": "completed",
+            "tables": {"growth": {key: "m" for key in growth}},
+            "single_fractures": [{"name": "a", "set": "s", "area": 2.0}, {"name": "b", "set": "s", "area": 1.0}],
+            "steps": [{"time": 4.0, "converged": True, "growth": growth, "single_fractures": singles, "fractures": {"s": {}}}],
+        }
+        (fractures, table), _ = figures.of_run(content, None, [])
+        rows = {row[0]: dict(zip(fractures.columns, row)) for row in fractures.rows}
+        self.assertEqual([(rows[name]["length (m)"], rows[name]["length at the start (m)"]) for name in ("a", "b")], [("2.2", "2"), ("1.2", "1")])
+        self.assertEqual((rows["a"]["largest slip (µm)"], rows["b"]["energy lost in growth, per depth (J/m)"]), ("300", "14"))
+        self.assertEqual(table.title, "Growth")
+        self.assertEqual(table.rows, [("4", "a", "200", "2.2", "16", "18", "(1.1, 0.2) (−1.1, −0.2)"), ("4", "b", "200", "1.2", "16", "30", "(5.2, 0)")])
+        said = figures.headline(content)
+        self.assertIn("The largest slip is 300 µm, on a.", said)
+        self.assertIn("grows most, by 200 mm.", said)
+        self.assertIn("of 200 cells (100 at the start)", report_page.summary(content, mock.Mock(entries={}), said))
+        singles |= {"max_slip": [0.0, 0.0]}
+        self.assertIn("No fracture slips. The largest opening is 1 mm, on a.", figures.headline(content))
+
     def test_time_of_pictures(self):
         """The last step, or the one with the largest slipping area if no face slips at the end."""
         def content(*shares):
@@ -418,6 +445,9 @@ class Words(ReportTest):
         self.assertEqual(time([1, 0], [0, 0.5], [0, None]), 1)
         self.assertEqual(time([1, 0], [0, 0.5], [0, 0], written=(0.0, 2.0)), 0)
         self.assertEqual(figures.time_of_pictures({"steps": [{"time": 2.0}]}, []), 2)
+        growing = content([0, 1], [0.1, 0], [0, 0])
+        growing["steps"][0]["growth"] = {"fracture": [0]}
+        self.assertEqual(figures.time_of_pictures(growing, (0.0, 1.0, 2.0)), 2)
 
     def test_rounding_is_zero_in_tables(self):
         self.assertEqual(figures.column("slip", [2e-3, 3e-19, None], "m"), ("slip (mm)", ["2", "0", "–"]))

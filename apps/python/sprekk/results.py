@@ -12,7 +12,7 @@ class Results:
     steps      pandas.DataFrame with the numbers of each step: time, newton_iterations, cuts, ...
     fractures  pandas.DataFrame with the index (time, fracture set); vectors have a column for each component
     single_fractures  the same for single fractures; .unstack("fracture") has one row for each step
-    points()   stress intensity factors as a pandas.DataFrame
+    points()   stress intensity factors as a pandas.DataFrame; points("growth"): extensions of growing fractures
     content    results.json as a dict"""
 
     def __init__(self, folder):
@@ -41,7 +41,7 @@ class Results:
                       for step in self.content["steps"] for k, name in enumerate(names)})
 
     def points(self, name="stress_intensity"):
-        """Returns the table of quantities at points of fractures: the columns of stress_intensity.csv, times in s."""
+        """Returns the table of quantities at points of fractures: the columns of stress_intensity.csv or growth.csv, times in s."""
         import pandas
         names = [one["name"] for one in self.content.get("single_fractures", [])]
         steps = [pandas.DataFrame(step[name]).assign(time=step["time"]) for step in self.content["steps"] if name in step]

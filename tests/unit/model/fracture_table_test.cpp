@@ -97,10 +97,11 @@ TEST(FractureTable, OfSinglesOmitsAreaAndGlobalVectors) {
   EXPECT_EQ(sets["fault"]["mean_v"]["global"].size(), 2);
   EXPECT_NEAR(sets["short"]["mean_v"]["local"][1].get<Real>(), 4, 1e-14);
   const auto lists = by_singles(columns);
-  ASSERT_EQ(lists.size(), 1);
+  ASSERT_EQ(lists.size(), 2);
+  EXPECT_NEAR(lists["area"][0].get<Real>(), 1, 1e-14);
   EXPECT_EQ(lists["mean_v_local"].size(), 2);
   EXPECT_NEAR(lists["mean_v_local"][1][0].get<Real>(), -3, 1e-14);
-  EXPECT_EQ(units(columns), nlohmann::json({{"mean_v_local", "Pa"}}));
+  EXPECT_EQ(units(columns), nlohmann::json({{"area", "m"}, {"mean_v_local", "Pa"}}));
 }
 
 TEST(FractureTable, DescribesSingleFractures) {
