@@ -61,7 +61,7 @@ TEST(LinearSolvers, AFineLevelKeepsIterationsLow) {
 
 /// In 2D the second level of nodes is solved directly, which saves iterations.
 TEST(LinearSolvers, TheSecondLevelIn2DIsSolvedDirectly) {
-  const std::string name = "verification/crossing_2d.xml", mesh = "Mesh.cells={80, 80}";
+  const std::string name = "verification/crossing_2d.xml", mesh = "Mesh.cells={48, 48}";
   const auto direct = run(name, {mesh, "Solver.Linear solver.type=direct"}, 1),
              usual = run(name, {mesh, "Solver.Linear solver.type=iterative"}, 1),
              small = run(name,
