@@ -239,7 +239,7 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   add_error_bounds(step["fractures"], outputs);
   step.update(reactions());
   step.update(tables_->of_state(outputs));
-  if (!tables_->units().empty()) json_["tables"] = tables_->units();
+  if (!tables_->units().empty()) json_["tables"].update(tables_->units());
   if (grown_) add_growth(step, taken.extensions);
   if (catalogue_) step["events"] = catalogue_->add(model_.mesh(), report.time, outputs);
   add_probes(step, outputs);
@@ -262,11 +262,10 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   return counts_of_classes(*model_.mesh().comm, outputs);
 }
 
-/// Adds the size of the mesh and the table of extensions.
+/// Adds the size of the mesh and the table of extensions, which a failed step does not have.
 void Results::add_growth(json& step, const estimate::StateTable& extensions) {
   step["mesh"] = mesh_summary(model_.mesh())["mesh"];
-  auto& units = json_["tables"]["growth"];
-  for (const auto& column : extensions.columns) units[column.name] = column.unit;
+  for (const auto& column : extensions.columns) json_["tables"]["growth"][column.name] = column.unit;
   if (extensions.fractures.empty()) return;
   step["growth"] = {{"fracture", extensions.fractures}};
   for (const auto& column : extensions.columns) step["growth"][column.name] = column.values;

@@ -97,6 +97,14 @@ class Growth(ProgramTest):
         self.assertAlmostEqual(part["single_fractures"][0]["area"], 0.6, delta=1e-12)
         self.assertEqual(len((self.folder / "part/growth.csv").read_text().splitlines()), len(table.splitlines()))
 
+    def test_failed_step(self):
+        """A step that fails later leaves the table of the extensions before."""
+        sets = [word for one in [*self.STRAIGHT, "Time.schedule={1.7, 2}", "Boundary conditions.top.traction={0, t > 1.8 ? 1e300 : 5e5*t}"] for word in ("--set", one)]
+        self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *sets, expect=3)
+        table = (self.folder / "out/growth.csv").read_text().splitlines()
+        self.assertIn("length [m]", table[0])
+        self.assertEqual(len(table) - 1, len(self.results()["steps"][0]["growth"]["length"]))
+
     def test_ranks(self):
         """The same path on one and on three ranks."""
         tip, energy = {}, {}
