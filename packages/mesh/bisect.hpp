@@ -10,7 +10,7 @@ struct Extension {
   std::array<Real, 2> tip, direction;  ///< position, m; unit vector into the rock; zero: only bisect cells
   Real length;                         ///< m
   Real size;                           ///< largest edge of the cells within `length` of the new faces, m
-  Real beyond = 0;                     ///< length beyond another fracture that is met, m; 0: the extension ends there
+  Real beyond = 0;  ///< length beyond another fracture that is met and ahead, m; 0: the extension ends there
 };
 
 /// Result of an extension: nothing, a new tip, a junction with another fracture, or a tip beyond it.
@@ -19,6 +19,7 @@ struct Extended {
   How how = none;
   std::array<Real, 2> begin = {}, end = {};  ///< of the last straight part, m
   int met = -1;                              ///< single fracture of a junction or crossing; -1: of a round before
+  bool is_ahead = false;                     ///< the direction of the extension leads through this fracture
   bool operator==(How other) const { return how == other; }
 };
 

@@ -86,6 +86,19 @@ class Bisection::Patch {
     return -1;
   }
 
+  /// Returns whether the ray from a point along a direction meets a single fracture.
+  bool is_ahead(const Point& from, const Point& direction, int single) const {
+    for (const auto& cell : of_.cells_)
+      for (int k = 0; k < 3; ++k) {
+        if (cell.label[k] < 0 || of_.labels_[cell.label[k]].single != single) continue;
+        const Point a = x(cell.node[(k + 1) % 3]) - from, b = x(cell.node[(k + 2) % 3]) - from;
+        const Real at_a = cross(direction, a), at_b = cross(direction, b);
+        if (at_a == at_b || at_a * at_b > 0) continue;
+        if (dot(direction, (at_b / (at_b - at_a)) * a - (at_a / (at_b - at_a)) * b) > 0) return true;
+      }
+    return false;
+  }
+
   /// End of a fracture: label of the side, and whether side minus is on the left when looking ahead.
   struct End {
     Label label;
@@ -256,6 +269,7 @@ Extended Bisection::extend(const Extension& wanted, std::vector<GlobalIndex>& pa
   refine_near(e, e.size, parent);
   if (norm(e.direction) == 0) return {Extended::tip};
   int single, met = -1;
+  bool is_ahead = false;
   {
     const Patch patch(*this);
     const GlobalIndex tip = patch.tip_at(e.tip, 1e-6 * e.length);
@@ -280,17 +294,18 @@ Extended Bisection::extend(const Extension& wanted, std::vector<GlobalIndex>& pa
       e.direction = (1 / e.length) * r;
     }
     if (passes && met < 0) return {};  // another fracture passes by
+    is_ahead = met >= 0 && patch.is_ahead(wanted.tip, wanted.direction, met);
   }
   if (!add_fitting_path(e, single, met < 0, parent)) return {};
   const Point end = e.tip + e.length * e.direction;
   if (met < 0) return {Extended::tip, e.tip, end};
   const Extension next{end, wanted.direction, wanted.beyond, wanted.size};
-  if (next.length > 0) {
+  if (next.length > 0 && is_ahead) {
     refine_near(next, next.size, parent);
     if (has_room(next, met) && add_fitting_path(next, single, true, parent))
-      return {Extended::crossing, end, end + next.length * next.direction, met};
+      return {Extended::crossing, end, end + next.length * next.direction, met, true};
   }
-  return {Extended::junction, e.tip, end, met};
+  return {Extended::junction, e.tip, end, met, is_ahead};
 }
 
 /// Returns whether no fracture or boundary is near an extension from a junction, apart from both that meet there.

@@ -243,7 +243,7 @@ std::vector<mesh::Extended> Model::change_mesh(const mesh::MeshChange& change) {
   const auto scope = timers_->scope("refinement");
   const auto comm = whole_mesh_->comm;
   std::vector<GlobalIndex> parent;  // on rank 0
-  std::vector<std::array<Real, 6>> made(change.extensions.size() + change.turns.size());
+  std::vector<std::array<Real, 7>> made(change.extensions.size() + change.turns.size());
   base::collectively(*comm, [&] {
     auto& bisection = *scene_.bisection;
     if (!bisection) return;
@@ -251,14 +251,15 @@ std::vector<mesh::Extended> Model::change_mesh(const mesh::MeshChange& change) {
     std::size_t k = 0;
     for (const auto& one : change.extensions) {
       const auto e = bisection->extend(one, parent);
-      made[k++] = {Real(e.how), e.begin[0], e.begin[1], e.end[0], e.end[1], Real(e.met)};
+      made[k++] = {Real(e.how), e.begin[0], e.begin[1], e.end[0], e.end[1], Real(e.met), Real(e.is_ahead)};
     }
     for (const auto& one : change.turns) made[k++][0] = bisection->turn(one);
   });
   if (!made.empty()) made = base::sum_over_ranks(*comm, made);
   std::vector<mesh::Extended> results;
   for (const auto& m : made)
-    results.push_back({static_cast<mesh::Extended::How>(m[0]), {m[1], m[2]}, {m[3], m[4]}, static_cast<int>(m[5])});
+    results.push_back(
+        {static_cast<mesh::Extended::How>(m[0]), {m[1], m[2]}, {m[3], m[4]}, static_cast<int>(m[5]), m[6] != 0});
   for (std::size_t k = 0; k < change.extensions.size(); ++k)
     if (results[k] == mesh::Extended::none) without_room_.push_back(change.extensions[k].tip);
   auto prepared = model::prepared(scene_);

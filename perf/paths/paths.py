@@ -91,10 +91,11 @@ def crossings(options, shown, failed):
             print(failed[-1], flush=True)
             continue
         met, exact = crossing.meeting(run.steps), crossing.exact_margin(*stresses)
-        wrong += met is None or (met["state"] == "crosses") != crosses
+        margin = met and met.get("margin")
+        wrong += margin is None or (met["state"] == "crosses") != crosses
         runs.append(run)
-        shown.add([f"crossing {case}: {met['state'] if met else 'none'}", met and met["x"], None, met and met["margin"], exact,
-                   met and met["margin"] - exact, run.newton[-1], run.seconds])
+        shown.add([f"crossing {case}: {met['state'] if met else 'none'}", met and met["x"], None, margin, exact,
+                   None if margin is None else margin - exact, run.newton[-1], run.seconds])
     return runs, wrong
 
 

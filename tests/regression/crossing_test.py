@@ -64,6 +64,17 @@ class Crossing(ProgramTest):
         for column in ("x", "y", "K_I"):
             for a, b in zip(*(table[column] for table in tables), strict=True):
                 self.assertAlmostEqual(a, b, delta=1e-9 * abs(a) + 1e-12)
+        whole, part = whole[-1], self.results("part")["steps"][-1]
+        self.assertAlmostEqual(whole["fractures"]["crack"]["fracture_energy"], part["fractures"]["crack"]["fracture_energy"], delta=1e-9)
+        self.assertEqual(whole.get("tips"), part.get("tips"))
+
+    def test_strength_out_of_bounds(self):
+        """A strength that is not positive beyond the fracture ends the run with an error on all ranks."""
+        scene = crossing.write_scene(self.folder / "scene", "a4")
+        for ranks in (1, 2):
+            errors = self.call("run", scene, "--output", "out", "--set", "Growth.segment=0.2", "--set", f"Fractures.crack.strength=x > {crossing.MEETING} ? -1 : 1e6",
+                               ranks=ranks, expect=1)[1]
+            self.assertIn('Fractures > crack: "strength"', errors)
 
     def test_without_strength(self):
         """Without a strength beyond, every fracture is an end."""

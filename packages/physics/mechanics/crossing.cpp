@@ -23,13 +23,15 @@ Real margin_of_crossing(const Setting& setting, const mesh::FrontPoint& front, c
   };
   const Vector t = met->along, n{-t[1], t[0], 0};
   std::array<Real, 2> beyond{};  // strength, stress along the face
-  if (met->cell >= 0) {
+  base::collectively(*mesh.comm, [&] {
+    if (met->cell < 0) return;
     const auto cell = in_cell(met->cell);
     beyond = {cell.strength, mesh::dot(t, times(cell.stress, t) + Real(-1) * of_tip(cell.x, t))};
-  }
+  });
   beyond = base::sum_over_ranks(*mesh.comm, beyond);
   Real margin = 0;
-  if (met->face >= 0) {
+  base::collectively(*mesh.comm, [&] {
+    if (met->face < 0) return;
     const auto& face = mesh.fracture_faces[met->face];
     const Vector contact{traction[met->face * 2], traction[met->face * 2 + 1], 0},
         far = (mesh::dot(face.frame[0], n) > 0 ? 1 : -1) * contact + Real(-1) * of_tip(face.centre, n);
@@ -39,7 +41,7 @@ Real margin_of_crossing(const Setting& setting, const mesh::FrontPoint& front, c
       const auto state = laws::start_of(joint, {normal, shear, 0}, 2);
       return normal > state.strength ? 0 : state.bound;
     });
-  }
+  });
   return base::sum_over_ranks(*mesh.comm, margin);
 }
 

@@ -142,7 +142,7 @@ void Mechanics::Fracture::describe(base::Section& s) {
   entry_of_place(
       s, strength, "strength", "Pa", base::positive(),
       "tensile strength of the rock beyond other fractures that a growing tip meets, a value or an expression of x, "
-      "y; the tip crosses a fracture if the rock beyond parts before the fracture slips; absent: it ends there");
+      "y; the tip crosses a fracture if the rock beyond fails before the fracture slips; absent: it ends there");
   if (s.complete() && strength && !toughness) s.fail("strength", "requires a \"toughness\"");
   s.section(prescribed_slip, "prescribed slip", "slip as a function of position and time, in place of friction");
 }

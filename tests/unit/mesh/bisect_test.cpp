@@ -459,6 +459,21 @@ TEST(Extension, CrossesAnotherFracture) {
     }
 }
 
+/// A fracture whose end is beside the line is met, but not crossed: its margin of crossing is unknown.
+TEST(Extension, EndsAtAFractureBesideTheLine) {
+  for (const Real slope : {-0.05, 0.05}) {
+    auto box = with_crack();
+    box.fractures["wall"] = fracture({6, 4}, {6, 6});
+    Bisection bisection(make_box(box));
+    std::vector<GlobalIndex> parent(bisection.n_cells());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto made = bisection.extend({{5, 4}, {std::sqrt(1 - slope * slope), slope}, 1.2, 0.3, 0.7}, parent);
+    EXPECT_GE(made.met, 0);
+    EXPECT_EQ(made.is_ahead, slope > 0);
+    if (slope < 0) EXPECT_EQ(made, Extended::junction);
+  }
+}
+
 /// Without room beyond, the extension ends at the other fracture.
 TEST(Extension, EndsAtAFractureBeforeAnother) {
   auto box = with_crack();
