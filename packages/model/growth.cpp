@@ -21,6 +21,7 @@ using Point = std::array<Real, 2>;
 
 constexpr int max_turns = 5;
 constexpr Real largest_turn = 0.35;  // rad
+constexpr Real noise = 1.001;        // largest rise of intensity/toughness that does not count
 constexpr Real together = 0.98;      // ratio to the largest intensity/toughness, of tips that grow together
 
 Real distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
@@ -121,13 +122,12 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   const auto& growth = model.scene().growth;
   if (!growth) return change_;
   const auto scope = model.timers().scope("growth");
-  if (!in_step_ || begin != begin_) {
+  if (begin_ != begin) {
     segments_.clear();
     events_.clear();
     added_.clear();
     n_rounds_ = 0;
   }
-  in_step_ = true;
   begin_ = begin;
   const auto tips = tips_of(model);
   turn(*growth, tips, log);
@@ -227,26 +227,33 @@ void Tips::complete(const Model& model, base::Log& log) {
                   {"lost_energy", "J/m"}}};
   std::map<int, std::array<Real, 2>> unstable;  // by single fracture: length, lost energy
   for (const auto& one : segments_)
-    if (one.after && one.after->ratio > one.before.ratio) unstable[one.before.fracture] = {};
+    if (one.after && one.after->ratio > noise * one.before.ratio) unstable[one.before.fracture] = {};
+  std::vector<std::array<Real, 6>> rows;
   for (const auto& one : segments_) {
     const auto& after = one.after ? *one.after : one.before;
     const Real length = distance(one.begin, one.tip), released = length * (one.before.G() + after.G()) / 2,
                dissipated = length * (one.before.G_c + after.G_c) / 2;
-    const auto found = unstable.find(one.before.fracture);
-    const Real lost = found == unstable.end() ? 0 : released - dissipated;
-    const Real row[] = {one.tip[0], one.tip[1], length, released, dissipated, lost};
-    extensions_.fractures.push_back(one.before.fracture);
-    for (std::size_t c = 0; c < extensions_.columns.size(); ++c) extensions_.columns[c].values.push_back(row[c]);
-    if (found != unstable.end()) found->second = {found->second[0] + length, found->second[1] + lost};
+    rows.push_back({one.tip[0], one.tip[1], length, released, dissipated, released - dissipated});
+    if (const auto found = unstable.find(one.before.fracture); found != unstable.end())
+      found->second = {found->second[0] + length, found->second[1] + released - dissipated};
+  }
+  std::erase_if(unstable, [](const auto& one) { return one.second[1] <= 0; });
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const int fracture = segments_[k].before.fracture;
+    if (!unstable.count(fracture)) rows[k].back() = 0;
+    extensions_.fractures.push_back(fracture);
+    for (std::size_t c = 0; c < rows[k].size(); ++c) extensions_.columns[c].values.push_back(rows[k][c]);
   }
   for (const auto& [fracture, of] : unstable)
     log.warning("t = {:.6g}: unstable growth of \"{}\" by {:.4g} m loses {:.4g} J/m", model.time(),
                 model.mesh().single_fractures[fracture].name, of[0], of[1]);
+  segments_.clear();
 }
 
 void Tips::apply(Model& model, const mesh::MeshChange& change, base::Log& log) {
   const auto before = model.scene().growth ? integrals(model) : std::map<std::string, Real>();
-  note(model.mesh(), model.change_mesh(change), log);
+  const auto made = model.change_mesh(change);
+  note(model.mesh(), made, log);
   if (before.empty()) return;
   for (const auto& [name, sum] : integrals(model))
     if (const Real more = sum - before.at(name); std::abs(more) > 1e-13 * std::abs(sum)) added_[name] += more;
@@ -273,7 +280,7 @@ void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made,
     const auto& result = made[k];
     const auto met = name(result.met);
     const auto& tip = growing_[k++];
-    events_.push_back({name(tip.fracture), met, tip.x, result.how, tip.crossing});
+    events_.push_back({name(tip.fracture), met, tip.x, result.how, result.is_ahead ? tip.crossing : std::nan("")});
     const bool crosses = result == Extended::crossing;
     if (crosses) segments_.push_back({.begin = tip.x, .tip = result.begin, .is_settled = true, .before = tip});
     if (result.begin != result.end)

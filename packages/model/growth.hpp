@@ -52,6 +52,8 @@ class Tips {
   mesh::MeshChange for_step(Model& model, Real begin, base::Log& log);
   /// Changes the mesh of a model at the begin of the step, and notes the results and the integrals that they add.
   void apply(Model& model, const mesh::MeshChange& change, base::Log& log);
+  /// Returns whether the mesh contains extensions of a step that is not complete.
+  bool is_in_growth() const { return !segments_.empty(); }
   /// Extensions of the complete step: tip x, y, `length`, and in J/m `released`, `fracture_energy` and `lost_energy`.
   ///
   /// The energies are the length times the means of G = K_hoop^2/E' and G_c = toughness^2/E' before the extension and
@@ -97,8 +99,7 @@ class Tips {
   void measure(const Growth& growth, const std::vector<Tip>& tips);
   void complete(const Model& model, base::Log& log);
 
-  Real begin_ = 0;
-  bool in_step_ = false;
+  std::optional<Real> begin_;      ///< of the step
   int n_rounds_ = 0;               ///< of extensions in the step
   std::vector<Segment> segments_;  ///< of the step
   std::vector<Point> arrested_;    ///< tips without room

@@ -177,9 +177,10 @@ void report_floating(base::Log& log, Real t, const std::string& before, const st
                 now);
 }
 
-/// Ends an interrupted run, with the results of all complete steps.
-Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoints, base::Log& log) {
-  checkpoints.at_the_end(results);
+/// Ends an interrupted run, with the results of all complete steps. The mesh of a step with growth is not saved: a
+/// restart repeats the step from the last checkpoint.
+Ending interrupt(const Model& model, Results& results, Checkpointing& checkpoints, bool is_in_growth, base::Log& log) {
+  if (!is_in_growth) checkpoints.at_the_end(results);
   results.finish("interrupted");
   const bool none = results.n_steps() == 0;
   log.warning("interrupted {}; {}", none ? "in the first step" : fmt::format("after the step to t = {}", model.time()),
@@ -250,7 +251,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
       return taken;
     });
     const auto& report = taken.report;
-    if (interrupted) return interrupt(model, results, checkpoints, log);
+    if (interrupted) return interrupt(model, results, checkpoints, tips.is_in_growth(), log);
     if (report.converged) continue;
     results.finish("failed", report.reason);
     log.warning("step to t = {} failed at t = {} after {} cuts: {}", taken.end, report.time, report.cuts,
