@@ -260,11 +260,12 @@ json Adaptation::meshes() const {
 json Adaptation::memory() const {
   json begins = json::array();
   for (const auto& run : runs_) begins.push_back(run.begin);
-  return {{"seconds", elapsed()}, {"begins", begins}, {"meshes", meshes()}};
+  return {{"seconds", elapsed()}, {"begins", begins}, {"meshes", meshes()}, {"ended", why_}};
 }
 
 void Adaptation::resume(const json& memory) {
   earlier_seconds_ = memory.at("seconds");
+  why_ = memory.value("ended", "");
   const auto& meshes = memory.at("meshes");
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     runs_.push_back({meshes[k].at("cells"), meshes[k].at("seconds"), memory.at("begins")[k], {}});
