@@ -23,7 +23,7 @@ def panels(steps, singles, start=0.0, dim=3):
     """Yields (label, unit, {name: values over the steps}) of a run; `singles`: names of single fractures."""
     times = np.array([step["time"] for step in steps])
     base_of_volume = "m²" if dim == 2 else "m³"  # volume per depth in 2D
-    lengths = {tuple(step.get("single_fractures", {}).get("area", ())) for step in steps}
+    lengths = {tuple(round(area, 9) for area in step.get("single_fractures", {}).get("area", ())) for step in steps}
     growth = [("area", "length", "m")] if dim == 2 and len(lengths) > 1 else []
     growth.append(("fracture_energy", "fracture energy (J/m)" if dim == 2 else "fracture energy (J)", ""))
     for key, label, base in (

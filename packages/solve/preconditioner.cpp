@@ -46,7 +46,7 @@ class NodeMultigrid : public Preconditioner {
     list.set("type", "multigrid");
     list.sublist("multigrid")
         .set("degree", options_.degree, "of Chebyshev's polynomial")
-        .set("coarsest level", options_.direct_limit(1), "unknowns at most")
+        .set("coarsest level", options_.direct_limit(1), "unknowns at most, below the finest")
         .set("minimum per rank", options_.minimum_per_rank, "numbers of a matrix, on average");
     for (const auto& name : enriching_) blocks.sublist(name).set("with", block());
   }

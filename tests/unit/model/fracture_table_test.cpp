@@ -85,7 +85,7 @@ TEST(FractureTable, HasIntegralsAndDerivedValues) {
   EXPECT_THAT(columns[2].values, ElementsAre(DoubleNear(0.5, 1e-14), DoubleNear(0.25, 1e-14)));
 }
 
-TEST(FractureTable, OfSinglesOmitsAreaAndGlobalVectors) {
+TEST(FractureTable, OfSinglesOmitsGlobalVectors) {
   const auto model = two_fractures();
   const auto& mesh = model.mesh();
   const auto vector = [&](const std::string& frame) {

@@ -128,6 +128,7 @@ TEST(Refinement, KeepsLinearFunctionsAroundGrowingTips) {
     const Real c = std::cos(0.6), s = std::sin(0.6);
     const mesh::Extension extension{{0.5, 0.5}, {c, s}, 0.2, 0.08};
     const auto made = model.change_mesh({{}, {extension}, {{{0.5, 0.5}, {0.5 + 0.2 * c, 0.5 + 0.2 * s}, 0.15}}});
+    ASSERT_EQ(made.size(), 2u);
     for (const auto& one : made) EXPECT_EQ(one, mesh::Extended::tip);
     const auto u = values_of(model, "displacement");
     const auto& mesh = model.mesh();
