@@ -138,10 +138,12 @@ def of_growth(steps, singles, dim, end):
     for step in steps:
         growth = step.get("growth", {"fracture": []})
         for k, fracture in enumerate(growth["fracture"]):
-            row = rows.setdefault((step["time"], fracture), {"length": 0.0, "fracture_energy": 0.0, "released": 0.0, "tips": []})
+            row = rows.setdefault((step["time"], fracture), {"length": 0.0, "fracture_energy": 0.0, "released": 0.0, "tips": [], "met": []})
             for key in ("length", "fracture_energy", "released"):
                 row[key] += growth[key][k]
             row["tips"].append((growth["x"][k], growth["y"][k]))
+            name = singles[fracture]["name"]
+            row["met"] = [f"{one['state']} {one['met']}" for one in step.get("tips", []) if one["fracture"] == name and "met" in one]
             row["size"] = step.get("single_fractures", {}).get("area", {fracture: None})[fracture]
     if not rows:
         return
@@ -151,8 +153,9 @@ def of_growth(steps, singles, dim, end):
         ("length", "extension", "m"), ("size", "length after it", "m"), ("fracture_energy", "fracture energy per depth", "J/m"),
         ("released", "released energy per depth", "J/m"))]
     last = [" ".join(f"({number(x)}, {number(y)})" for x, y in rows[key]["tips"][-2:]) for key in shown]
+    met = [", ".join(rows[key]["met"]) for key in shown]
     others = len(rows) - len(shown)
-    yield Table("Growth", [title for title, _ in columns] + ["last new tips (m)"], list(zip(*(texts for _, texts in columns), last)),
+    yield Table("Growth", [title for title, _ in columns] + ["last new tips (m)", "other fractures"], list(zip(*(texts for _, texts in columns), last, met)),
                 f"{others} earlier ones are in growth.csv" if others else "")
 
 

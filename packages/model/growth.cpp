@@ -233,6 +233,8 @@ void Tips::complete(const Model& model, base::Log& log) {
     const auto& after = one.after ? *one.after : one.before;
     const Real length = distance(one.begin, one.tip), released = length * (one.before.G() + after.G()) / 2,
                dissipated = length * (one.before.G_c + after.G_c) / 2;
+    log.info("\"{}\" has grown by {:.4g} m to ({:.6g}, {:.6g})",
+             model.mesh().single_fractures[one.before.fracture].name, length, one.tip[0], one.tip[1]);
     rows.push_back({one.tip[0], one.tip[1], length, released, dissipated, released - dissipated});
     if (const auto found = unstable.find(one.before.fracture); found != unstable.end())
       found->second = {found->second[0] + length, found->second[1] + released - dissipated};
@@ -287,10 +289,12 @@ void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made,
       segments_.push_back(
           {.begin = result.begin, .tip = result.end, .is_settled = result == Extended::junction, .before = tip});
     if (crosses)
-      log.info("the tip at ({:.6g}, {:.6g}) crosses the fracture \"{}\"", one.tip[0], one.tip[1], met);
+      log.info("\"{}\" crosses the fracture \"{}\" at ({:.6g}, {:.6g})", name(tip.fracture), met, result.begin[0],
+               result.begin[1]);
     else if (result == Extended::junction)
-      log.info("the tip at ({:.6g}, {:.6g}) has met another fracture{}", one.tip[0], one.tip[1],
-               met.empty() ? "" : fmt::format(", \"{}\", and ends there", met));
+      log.info("\"{}\" meets {} and ends there", name(tip.fracture),
+               met.empty() ? "another extension"
+                           : fmt::format("the fracture \"{}\" at ({:.6g}, {:.6g})", met, result.end[0], result.end[1]));
     if (result != Extended::none) continue;
     arrested_.push_back(one.tip);
     log.warning(

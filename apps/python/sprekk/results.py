@@ -41,12 +41,17 @@ class Results:
                       for step in self.content["steps"] for k, name in enumerate(names)})
 
     def points(self, name="stress_intensity"):
-        """Returns the table of quantities at points of fractures: the columns of stress_intensity.csv or growth.csv, times in s."""
+        """Returns the table of quantities at points of fractures: the columns of stress_intensity.csv or growth.csv, times in s.
+
+        `name`: "stress_intensity" or "growth"."""
         import pandas
+        known = self.content.get("tables", {})
+        if name not in known:
+            raise _sprekk.Error(f"{self.folder}: results.json contains no table \"{name}\"; there are: {', '.join(known) or 'none'}")
         names = [one["name"] for one in self.content.get("single_fractures", [])]
         steps = [pandas.DataFrame(step[name]).assign(time=step["time"]) for step in self.content["steps"] if name in step]
         if not steps:
-            raise _sprekk.Error(f"{self.folder}: results.json contains no \"{name}\"; no fracture requests it")
+            raise _sprekk.Error(f"{self.folder}: no step has rows of \"{name}\"")
         found = pandas.concat(steps, ignore_index=True)
         return found.assign(fracture=[names[k] for k in found["fracture"]])
 
