@@ -48,11 +48,17 @@ def tractions(points, places, dip, modulus, nu):
     return tuple(of[:, :-1] - of[:, 1:] for of in (tau, sigma))
 
 
-def antiplane(points, places, modulus):
+def antiplane(points, places, modulus, far=None):
     """The same for slip along the strike of a vertical fault. A screw dislocation at w has the stress G/(2 pi (z - w)),
-    and a mirror image above the surface."""
+    and a mirror image above the surface. `far`: in a box with this depth and this distance of the sides. The sides have
+    no displacement and the bottom no traction. Images aside add up to G coth(pi (z - w)/(2 far))/(4 far); those below
+    and above follow at multiples of 2 far and decrease like exp(-2 pi m)."""
     z, w = np.meshgrid(places, points, indexing="ij")
-    of = modulus / (2 * np.pi) * (1 / (z - w) - 1 / (z + w))
+    if far is None:
+        of = modulus / (2 * np.pi) * (1 / (z - w) - 1 / (z + w))
+    else:
+        scale, away = np.pi / (2 * far), np.arange(-4, 5)[:, None, None] * np.pi
+        of = modulus / (4 * far) * (1 / np.tanh(scale * (z - w) + away) - 1 / np.tanh(scale * (z + w) + away)).sum(axis=0)
     return of[:, 1:] - of[:, :-1], np.zeros((1, len(points) - 1))
 
 
@@ -93,10 +99,10 @@ def locked(points, of_shear, of_normal, L=0.008):
     return Fault(friction, of_shear, of_normal, shear, COMPRESSION, PLATE_RATE)
 
 
-def bp1(size=100.0, growth=1.01, L=0.008):
-    """Problem BP1-QD, a vertical fault in antiplane strain, with this state evolution distance."""
+def bp1(size=100.0, growth=1.01, L=0.008, far=None):
+    """Problem BP1-QD, a vertical fault in antiplane strain, with this state evolution distance, in a box with `far`."""
     points = cells_to(LOCKED, size, growth)
-    return locked(points, *antiplane(points, (points[1:] + points[:-1]) / 2, SHEAR_MODULUS), L=L)
+    return locked(points, *antiplane(points, (points[1:] + points[:-1]) / 2, SHEAR_MODULUS, far), L=L)
 
 
 def bp3(size=100.0, dip=np.pi / 3, growth=1.01):
