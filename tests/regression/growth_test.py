@@ -2,8 +2,9 @@
 """Growth of fractures along free paths: wings of a flaw, a straight crack, ranks, restart, refused scenes: growth_test.py PROGRAM ROOT MPIEXEC"""
 
 import math
+import subprocess
 
-from program import ProgramTest, main
+from program import PROGRAM, ProgramTest, main
 
 WINGS = "growth/wing_cracks_2d.xml"
 
@@ -96,6 +97,26 @@ class Growth(ProgramTest):
         self.assertAlmostEqual(part["steps"][-1]["fractures"]["crack"]["fracture_energy"], crack["fracture_energy"], delta=1e-9 * crack["fracture_energy"])
         self.assertAlmostEqual(part["single_fractures"][0]["area"], 0.6, delta=1e-12)
         self.assertEqual(len((self.folder / "part/growth.csv").read_text().splitlines()), len(table.splitlines()))
+
+    def test_interrupted_growth(self):
+        """A restart after an interruption in a step with extensions has the results of a complete run."""
+        sets = [*self.STRAIGHT, "Time.schedule={1.4, 1.55, 1.7, 2}"]
+        whole = self.run_scene("growth/edge_crack_2d.xml", *sets, output="whole")["steps"][-1]
+        words = [str(PROGRAM), "run", str(self.scene("growth/edge_crack_2d.xml")), "--output", "part"]
+        words += [word for one in [*sets, "Output.checkpoints.steps=2"] for word in ("--set", one)]
+        with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, text=True) as run:
+            for line in run.stdout:
+                if "the step to 2 is repeated" in line:
+                    run.terminate()
+                    break
+            run.stdout.read()
+        self.assertEqual(run.returncode, 4)
+        self.call(*words[1:], "--restart")
+        part = self.results("part")["steps"][-1]
+        for a, b in zip(part["growth"]["x"], whole["growth"]["x"], strict=True):
+            self.assertAlmostEqual(a, b, delta=1e-6)
+        energy = whole["fractures"]["crack"]["fracture_energy"]
+        self.assertAlmostEqual(part["fractures"]["crack"]["fracture_energy"], energy, delta=1e-6 * energy)
 
     def test_failed_step(self):
         """A step that fails later leaves the table of the extensions before."""
