@@ -87,7 +87,7 @@ def forces(steps, scene):
     fractures = steps[-1].get("fractures", {}).values()
     on_fractures = [f["area"] * np.abs(f["mean_traction"]["global"]) for f in fractures if "mean_traction" in f]
     on_fractures += [f["area"] * np.abs(f["mean_fracture_pressure"]) for f in fractures if "mean_fracture_pressure" in f]
-    largest = max(np.max(np.abs(forces), initial=0) for forces in (list(reactions.values()), on_fractures))
+    largest = max(np.max(np.abs(force), initial=0) for force in (*reactions.values(), *on_fractures))
     relative = np.max(np.abs(total)) / largest if largest > 0 else 0
     loads = [entry for entry in LOADS if scene.has(entry)]
     if loads and relative > MAX_UNBALANCED:

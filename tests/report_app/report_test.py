@@ -203,6 +203,13 @@ class Checks(ReportTest):
         for surface in (rock, joints):  # before and after the excavation
             self.assertEqual(len({frame["triangles"] for frame in surface["frames"]}), 2)
 
+    def test_forces_of_a_pressure(self):
+        """Reactions that are round-off of the force of a pressure in fractures are balanced, others are not."""
+        for force, verdict in ((1e-7, "passed"), (1e3, "failed")):
+            step = {"reactions": {"side": [force, 0.0]}, "fractures": {"crack": {"area": 4.0, "mean_fracture_pressure": 1e7}}}
+            found, = checks.forces([step], mock.Mock(has=lambda entry: False))
+            self.assertEqual(found.verdict, verdict)
+
     def test_what_is_wrong_fails(self):
         self.run_scene("poro/injection_2d.xml", "Time.steps=2", "Time.end=3600")
 
@@ -416,14 +423,15 @@ class Words(ReportTest):
             "status": "completed",
             "tables": {"growth": {key: "m" for key in growth}},
             "single_fractures": [{"name": "a", "set": "s", "area": 2.0}, {"name": "b", "set": "s", "area": 1.0}],
-            "steps": [{"time": 4.0, "converged": True, "growth": growth, "single_fractures": singles, "fractures": {"s": {}}}],
+            "steps": [{"time": 4.0, "converged": True, "growth": growth, "single_fractures": singles, "fractures": {"s": {}},
+                       "tips": [{"fracture": "a", "state": "grows"}, {"fracture": "b", "state": "ends at", "met": "a"}]}],
         }
         (fractures, table), _ = figures.of_run(content, None, [])
         rows = {row[0]: dict(zip(fractures.columns, row)) for row in fractures.rows}
         self.assertEqual([(rows[name]["length (m)"], rows[name]["length at the start (m)"]) for name in ("a", "b")], [("2.2", "2"), ("1.2", "1")])
         self.assertEqual((rows["a"]["largest slip (µm)"], rows["b"]["energy lost in growth, per depth (J/m)"]), ("300", "14"))
         self.assertEqual(table.title, "Growth")
-        self.assertEqual(table.rows, [("4", "a", "200", "2.2", "16", "18", "(1.1, 0.2) (−1.1, −0.2)"), ("4", "b", "200", "1.2", "16", "30", "(5.2, 0)")])
+        self.assertEqual(table.rows, [("4", "a", "200", "2.2", "16", "18", "(1.1, 0.2) (−1.1, −0.2)", ""), ("4", "b", "200", "1.2", "16", "30", "(5.2, 0)", "ends at a")])
         said = figures.headline(content)
         self.assertIn("The largest slip is 300 µm, on a.", said)
         self.assertIn("grows most, by 200 mm.", said)
