@@ -1,10 +1,10 @@
 """Python package on one rank: alone_test.py ROOT PROGRAM"""
+import json
 import os
 import resource
 import subprocess
 import sys
 import tempfile
-import threading
 import threading
 import unittest
 from pathlib import Path
@@ -107,6 +107,23 @@ class Folders(unittest.TestCase):
                 self.assertTrue((Path(folder) / "python" / file).exists(), file)
         with self.assertRaisesRegex(sprekk.Error, "has no results.json"):
             sprekk.Results("absent")
+
+    def test_tables_of_points(self):
+        """Extensions with times and names of fractures; names of tables that do not exist."""
+        growth = {"fracture": [1, 0], "x": [0.5, -0.5], "length": [0.1, 0.2]}
+        content = {"tables": {"growth": {"x": "m", "length": "m"}}, "single_fractures": [{"name": "a"}, {"name": "b"}],
+                   "steps": [{"time": 1.0}, {"time": 2.0, "growth": growth}], "status": "completed"}
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "results.json"
+            file.write_text(json.dumps(content))
+            table = sprekk.Results(folder).points("growth")
+            self.assertEqual(list(table["fracture"]), ["b", "a"])
+            self.assertEqual((list(table["time"]), list(table["length"])), ([2.0, 2.0], [0.1, 0.2]))
+            with self.assertRaisesRegex(sprekk.Error, 'no table "tips"; there are: growth'):
+                sprekk.Results(folder).points("tips")
+            file.write_text(json.dumps({**content, "steps": [{"time": 1.0}]}))
+            with self.assertRaisesRegex(sprekk.Error, 'no step has rows of "growth"'):
+                sprekk.Results(folder).points("growth")
 
     def test_probes(self):
         try:
