@@ -74,8 +74,8 @@ TEST(LeakOff, AFractureGrowsAsFarAsItsBalanceAllows) {
 /// Layers of hexahedra give nearly the result of quadrilaterals. All ranks find that of a single rank, and a restored
 /// model continues with the same steps.
 ///
-/// Each step has a unique equilibrium. With a step to 4 s there are two, which differ in the broken length by 1e-3, and
-/// round-off decides between them.
+/// Runs with a step to 4 s end in one of two states, which differ in the broken length by 1e-3: round-off decides
+/// between them.
 TEST(LeakOff, IsTheSameInThreeDimensionsOnAllRanksAndAfterARestart) {
   std::vector<std::array<Real, 2>> all;
   for (const std::string cell : {"quadrilateral", "hexahedron"}) {
