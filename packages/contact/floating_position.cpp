@@ -124,7 +124,7 @@ std::vector<FloatingPieces::Form> FloatingPieces::slip_form(const std::vector<Mo
 /// Computes generalised eigenvectors of slip form and distance form, group by group. In their coordinates both forms
 /// are diagonal. The weight of vectors with slip is their share of the slip form. The weight of others is very small,
 /// so that they yield if an obstacle involves both kinds. Slip below 1e-6 of the motion is round-off of the free
-/// motions: if it counted, the least slip would require an endless motion.
+/// motions and does not count; otherwise the least slip would require an unbounded motion.
 FloatingPieces::Places FloatingPieces::places(const fields::Vector& displacement,
                                               const std::vector<Slide>& slides) const {
   constexpr Real little = 1e-8;

@@ -63,8 +63,8 @@ class Bisection {
   /// Bisects cells near the extension to its size. Then moves nodes to the line of the extension or splits edges that
   /// cross it, and adds the edges along the line to the fracture at the tip. Nodes on fractures and boundaries do not
   /// move. If the line ends at another fracture, or less than half of the length before it, the extension ends at a
-  /// node of this fracture, or it continues from there by `beyond` if there is room. Otherwise nothing but the
-  /// bisection is done if a fracture or a boundary lies within half of the length, or if cells would become too flat.
+  /// node of this fracture, or it continues from there by `beyond` if there is room. Without room, only cells
+  /// are bisected: if a fracture or a boundary lies within half of the length, or if cells would become too flat.
   /// `parent` as in refine(), of all calls so far. 2D.
   Extended extend(const Extension& extension, std::vector<GlobalIndex>& parent);
   /// Rotates the nodes of an extension, and the nodes around it by a part of the angle. Returns false, without a

@@ -130,7 +130,7 @@ void Scene::check_growth(base::Section& s) const {
   fail_if(output.events.has_value(), "Output > \"events\": is given", "must be absent");
   fail_if(!stages.empty(), "Stages: is given", "must be absent");
   fail_if(std::none_of(fractures.begin(), fractures.end(), [](const auto& one) { return one.second.toughness; }),
-          "Fractures: none has a \"toughness\"", "which a fracture needs to grow,");
+          "Fractures: none has a \"toughness\"", "one is required");
   auto facets = physics::Facets::none;
   physics::for_each_physics([&](auto physics) { facets = std::max(facets, physics.needs_facets(*this)); });
   physics::for_each_physics([&]<physics::HasRates P>(P) {
