@@ -156,8 +156,8 @@ class Packages(unittest.TestCase):
 
     def test_7_pip(self):
         """The source archive, without git, with a virtual environment and with Debian's Python."""
-        self.debian.install("ccache", "lld", "ninja-build", "python3-pip", "python3-venv")
         self.debian.call("tar -xf /packages/sprekk-*.tar.gz && mv sprekk-*/ source")
+        self.debian.call('. source/apps/launcher/source_tree.sh && apt-get install -y "${packages[@]}" python3-{pip,venv}')
         self.debian.call("python3 -m venv environment && environment/bin/pip install ./source")
         (self.debian.folder / "root/model.py").write_text(MODEL.replace(XML, "/root/source/xml"))
         self.assertIn("/root/environment/", self.debian.call("environment/bin/python model.py"))
