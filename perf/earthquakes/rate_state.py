@@ -110,8 +110,7 @@ def injection(options, row, name):
         x, slip, length = slip_at(run, t)
         exact_slip = exact.states[k][:fine.n]
         errors.append(deviation(slip, np.interp(x, fine.z, exact_slip), length))
-        relative = np.interp(STATIONS, x, slip) / np.interp(STATIONS, fine.z, exact_slip) - 1
-        places += [f"{z / 1000:g} km, {t:g} s: {error:+.1%}" for z, error in zip(STATIONS, relative) if abs(error) > 0.01]
+        places += at_stations(t, np.interp(STATIONS, x, slip), fine.z, exact_slip)
     line, converged = explicit_injection(size, LADDER[-1], times)
 
     def error_of(tolerance):
@@ -144,6 +143,15 @@ def slip_at(run, t):
     ends = np.array([corners[:2, 0] for corners in faces.corners()])
     order = np.argsort(ends.mean(axis=1))
     return ends.mean(axis=1)[order], faces.cell_data["slip"][order], np.abs(np.diff(ends)[order, 0])
+
+
+def at_stations(t, slip, z, exact):
+    """Stations whose slip differs by more than 1 %, with the shift of the exact profile, which decreases with the
+    distance z from the centre, that gives this slip."""
+    relative, right = slip / np.interp(STATIONS, z, exact) - 1, z >= 0
+    shifts = np.interp(-slip, -exact[right], z[right]) - STATIONS
+    return [f"{station / 1000:g} km, {t:g} s: {error:+.1%}, {shift:+.0f} m"
+            for station, error, shift in zip(STATIONS, relative, shifts) if abs(error) > 0.01]
 
 
 def deviation(slip, exact, length=1):

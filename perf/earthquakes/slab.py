@@ -15,7 +15,7 @@ FAR, THICKNESS = 200e3, 100.0  # m, to the sides and the bottom; thickness of th
 DOWN, ASIDE = 1.1, 1.6         # ratios of the sizes of neighbouring cells, below 18 km and away from the fault, at COARSE
 L = 0.032                      # m, four times that of the problem
 END = 500                      # years: two events
-COARSE, *_ = SIZES = (800.0, 400.0)  # m, of the cells on the fault
+COARSE, *_ = SIZES = (800.0, 562.5, 400.0)  # m, of the cells on the fault
 EXPLICIT = {"BP1-QD, 4 L, explicit method": (200.0,),  # size of the cells, half-width and depth of a box
             "BP1-QD, 4 L, explicit method, box": (100.0, FAR)}
 
@@ -63,8 +63,8 @@ def explicit(size, far=None):
 
 def write_scene(file, size):
     """Writes the scene and its mesh. The fault x = 0 reaches from the surface z = 0 to the bottom. All displacements
-    are along y, so the compression of the fault is constant. Below 40 km the fault slips at the plate rate. Half of the
-    size takes square roots of the ratios, which divides all cells in about two equal parts."""
+    are along y, so the compression of the fault is constant. Below 40 km the fault slips at the plate rate. The
+    logarithms of the ratios are proportional to the size, so that all cells become smaller by about the same factor."""
     down = fitted(growing(size, DOWN**(size / COARSE), FAR, half_plane.STRENGTHENING), FAR)
     aside = fitted(growing(size, ASIDE**(size / COARSE), FAR), FAR)
     axes = [both_ways(aside), np.array([0, THICKNESS]), -down[::-1]]
