@@ -146,12 +146,12 @@ def slip_at(run, t):
 
 
 def at_stations(t, slip, z, exact):
-    """Stations whose slip differs by more than 1 %, with the shift of the exact profile, which decreases with the
-    distance z from the centre, that gives this slip."""
+    """Stations whose slip differs by more than 1 %, with the distance, outwards, to the place where the exact slip is the
+    same. It decreases with the distance z from the centre."""
     relative, right = slip / np.interp(STATIONS, z, exact) - 1, z >= 0
-    shifts = np.interp(-slip, -exact[right], z[right]) - STATIONS
-    return [f"{station / 1000:g} km, {t:g} s: {error:+.1%}, {shift:+.0f} m"
-            for station, error, shift in zip(STATIONS, relative, shifts) if abs(error) > 0.01]
+    distances = np.interp(-slip, -exact[right], z[right]) - STATIONS
+    return [f"{station / 1000:g} km, {t:g} s: {error:+.1%}, {distance:+.0f} m"
+            for station, error, distance in zip(STATIONS, relative, distances) if abs(error) > 0.01]
 
 
 def deviation(slip, exact, length=1):
