@@ -10,7 +10,7 @@ import numpy as np
 
 from perf.common import options as common
 from perf.common import program, table
-from perf.earthquakes import fluid_driven, rate_state, rupture, sequence, slab
+from perf.earthquakes import fluid_driven, rate_state, rupture, sequence, slab, strike_slip
 
 BOUNDS = {"failures": 0, "worst_error": 0.03, "newton_median": 4, "steps_ratio": 2}
 QUICK_BOUNDS = {**BOUNDS, "steps_ratio": 10}  # a guard: spring sliders miss the target
@@ -65,6 +65,7 @@ def cases(options):
     yield from rate_state.cases(options, Row)
     yield from sequence.cases(options, Row)
     yield from slab.cases(options, Row)
+    yield from strike_slip.cases(options, Row)
     yield from fluid_driven.cases(options, Row.of_run)
     yield from rupture.cases(options, Row.of_run)
 
