@@ -228,6 +228,18 @@ class Verdicts(ProgramTest):
             run = contact.Run(self.folder / drawn.name, 0, "", results=results, scene=Scene(drawn.name, str(path)))
             self.assertEqual(random_run.judge(run, path), ("ok", []))
 
+    def test_springs_leave_the_elastic_jump_of_stiffening_joints_alone(self):
+        """The tangential stiffness grows with the compression. Newton's method fails, and proximal continuation follows. Its springs
+        acted on a part of the elastic jump; then no stiffness of the springs converged."""
+        drawn, refusal = random_scenes.write(71003, 7, self.folder, program.PROGRAM)
+        self.assertEqual(refusal, "")
+        path = self.folder / f"{drawn.name}.xml"
+        self.call("run", path, "--output", self.folder / "out", "--set", "Time.end=0.015625", "--set", "Time.steps=1",
+                  "--set", "Time.maximum halvings=0")
+        results = json.loads((self.folder / "out/results.json").read_text())
+        run = contact.Run(self.folder / "out", 0, "", results=results, scene=Scene(drawn.name, str(path)))
+        self.assertEqual(random_run.judge(run, path), ("ok", []))
+
     def test_all_ways_lead_to_the_same_fields(self):
         """Runs one scene in seven ways, and again with a program that changes the rock of renumbered meshes."""
         inexact = self.folder / "inexact"
