@@ -105,6 +105,23 @@ TEST(LeakOff, IsTheSameInThreeDimensionsOnAllRanksAndAfterARestart) {
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(all[1][k] / all[0][k], 1, 1e-2) << k;
 }
 
+/// The openings of bonded faces at rest are round-off, which depends on the numbers of nodes and cells. The derivative
+/// of their volume must not: the steps to 3 s and 4 s then end in other states, with less than half of the broken
+/// length.
+TEST(LeakOff, DoesNotDependOnTheSignOfRoundOff) {
+  std::vector<Real> broken;
+  for (const int seed : {0, 2, 9}) {
+    auto scene = small_body("hexahedron");
+    scene.fractures.at("growing").leak_off = leak_off / 4;
+    if (seed > 0) scene.mesh.renumbering_seed = seed;
+    model::Model model(scene, Tpetra::getDefaultComm());
+    for (const Real t : {0.5, 1.0, 2.0, 3.0, 4.0}) ASSERT_TRUE(model.step_to(t).converged) << seed << " " << t;
+    broken.push_back(opened(model, true).broken);
+  }
+  EXPECT_GT(broken[0], 1e-4);
+  for (const Real each : broken) EXPECT_NEAR(each / broken[0], 1, 1e-8);
+}
+
 /// A bisected mesh has the same leaked fluid, and in the following steps the balance of all fluid since the start is
 /// exact. Faces of the notch, open all the time, continue with their exposure.
 TEST(LeakOff, ContinuesOnARefinedMesh) {
