@@ -92,8 +92,8 @@ struct JointPoints {
  private:
   KOKKOS_INLINE_FUNCTION bool is_prescribed(int f) const;
   template <class T>
-  KOKKOS_INLINE_FUNCTION void contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
-                                      T (&borne)[dim]) const;
+  KOKKOS_INLINE_FUNCTION T contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
+                                   T (&borne)[dim]) const;
   template <class T>
   KOKKOS_INLINE_FUNCTION ContactState evaluate(int f, const T (&w)[dim], const T (&traction)[dim], T (&R)[dim]) const;
   template <class T>

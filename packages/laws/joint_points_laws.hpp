@@ -28,40 +28,64 @@ KOKKOS_INLINE_FUNCTION bool JointPoints<dim>::is_prescribed(int f) const {
   return prescribed.extent(0) > 0 && prescribed(f, 1) != not_prescribed;
 }
 
+/// Joint law with a given tangential compliance, m/Pa.
+template <class T>
+struct WithCompliance : Joint {
+  T given;
+  KOKKOS_INLINE_FUNCTION T compliance(const Contact<T>&) const { return given; }
+};
+
 /// Computes the traction of contact and friction, and the corresponding jump, without the proximal term. The proximal
 /// term carries proximal c (w_n - anchor) of the normal traction and proximal c (p - anchor) of the tangential
-/// traction, with p = w_t - lambda_t/K_t and the initial K_t. The tangential elasticity acts on the whole traction.
+/// traction, with p = w_t - C lambda_t. The tangential elasticity acts on the whole traction: C is the compliance under
+/// the whole normal traction, also in the law, which therefore finds the same p. Returns C.
 template <int dim>
 template <class T>
-KOKKOS_INLINE_FUNCTION void JointPoints<dim>::contact(int f, const T (&w)[dim], const T (&traction)[dim],
-                                                      T (&jump)[dim], T (&borne)[dim]) const {
+KOKKOS_INLINE_FUNCTION T JointPoints<dim>::contact(int f, const T (&w)[dim], const T (&traction)[dim], T (&jump)[dim],
+                                                   T (&borne)[dim]) const {
+  Real rest[dim], held[dim];  // jump and traction of the anchor
   for (int k = 0; k < dim; ++k) {
-    jump[k] = w[k];
-    borne[k] = traction[k];
-    if (proximal == 0) continue;
-    const Real compliance = k == 0 ? 0 : law[number(f)].elastic.initial_compliance();
-    Real there = 0;
-    for (int i = 0; i < dim; ++i) there += frame(f, k, i) * (anchor(f, i) - compliance * anchor(f, dim + i));
-    const T pull = spring(f) * (w[k] - compliance * traction[k] - there);
-    jump[k] -= compliance * pull;
-    borne[k] -= pull;
+    rest[k] = held[k] = 0;
+    for (int i = 0; i < dim; ++i) {
+      rest[k] += frame(f, k, i) * anchor(f, i);
+      held[k] += frame(f, k, i) * anchor(f, dim + i);
+    }
   }
+  const auto compliance_at = [&](const auto& normal) {
+    using Number = std::decay_t<decltype(normal)>;
+    const Number p[dim - 1] = {};
+    const Real old[dim - 1] = {};
+    return Number(law[number(f)].compliance(laws::contact<dim>(normal, Number(0), p, old, history(f))));
+  };
+  const T compliance = compliance_at(traction[0]);
+  const Real at_anchor = compliance_at(held[0]);
+  jump[0] = w[0];
+  borne[0] = traction[0] - spring(f) * (w[0] - rest[0]);
+  for (int k = 1; k < dim; ++k) {
+    const T pull = spring(f) * (w[k] - compliance * traction[k] - (rest[k] - at_anchor * held[k]));
+    jump[k] = w[k] - compliance * pull;
+    borne[k] = traction[k] - pull;
+  }
+  return compliance;
 }
 
 template <int dim>
 template <class T>
 KOKKOS_INLINE_FUNCTION ContactState JointPoints<dim>::evaluate(int f, const T (&w)[dim], const T (&traction)[dim],
                                                                T (&R)[dim]) const {
-  Real old[dim - 1];
+  Real old[dim - 1], given[dim];
   for (int i = 0; i < dim - 1; ++i) old[i] = p_old(f, i);
-  T jump[dim], borne[dim];
-  contact(f, w, traction, jump, borne);
+  for (int i = 0; i < dim && is_prescribed(f); ++i) given[i] = prescribed(f, i);
   const auto& joint = law[number(f)];
   const auto c = laws::augmentation(joint, constant(f), spring(f));
-  if (!is_prescribed(f)) return contact_residual<dim>(joint, c, jump, borne, old, R, history(f), duration);
-  Real given[dim];
-  for (int i = 0; i < dim; ++i) given[i] = prescribed(f, i);
-  return prescribed_residual<dim>(joint, c, jump, borne, old, given, R, history(f), duration);
+  const auto residual_of = [&](const auto& law, const T(&jump)[dim], const T(&borne)[dim]) {
+    if (!is_prescribed(f)) return contact_residual<dim>(law, c, jump, borne, old, R, history(f), duration);
+    return prescribed_residual<dim>(law, c, jump, borne, old, given, R, history(f), duration);
+  };
+  if (proximal == 0) return residual_of(joint, w, traction);
+  T jump[dim], borne[dim];
+  const T compliance = contact(f, w, traction, jump, borne);
+  return residual_of(WithCompliance<T>{joint, compliance}, jump, borne);
 }
 
 template <int dim>

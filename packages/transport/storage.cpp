@@ -82,9 +82,12 @@ struct StorageFace : StorageCell {
   KOKKOS_INLINE_FUNCTION Real stored_before(int e) const {
     return stored(e, {initial(e) + gained(e, 0), gained(e, 1)});
   }
+  /// Within the rounding error of the widening, the derivative is that of an opening face. Otherwise, the sign of this
+  /// error would select the next iterate of a face at rest, and thus one of several solutions.
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[2], Real (&J)[1][2]) const {
+    constexpr Real rounding = 1e-5;  // of the residual aperture
     const Real density = volume(e) * rate * fluid.density(x[0]);
-    J[0][1] = is_wide(e, x[1]) ? share(e) * density : 0;
+    J[0][1] = is_wide(e, x[1] + rounding * minimum(e)) ? share(e) * density : 0;
     J[0][0] = density * aperture(e, x[1]) * fluid.compressibility;
   }
 };

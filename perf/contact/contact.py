@@ -9,7 +9,7 @@ import violation
 
 from perf.common import options as common
 from perf.common import program, table
-from perf.contact import drawn_runs
+from perf.contact import drawn_runs, other_ways
 from perf.contact.scenes import scenes
 
 LIMITS = {"cpu": 120, "clock": 900}  # seconds of the processor per rank; seconds, which depend on the load of the machine
@@ -156,6 +156,7 @@ def main(words):
     parser = common.parser("contact", __doc__, "a third of the scenes; without --only the status is also 1 above a stated bound", "scenes", sets=False)
     parser.add_argument("--ranks", type=common.count, default=1, metavar="N", help="also run on N ranks, and compare the states")
     drawn_runs.add_options(parser)
+    other_ways.add_option(parser)
     options = parser.parse_args(words)
     if options.random:
         from perf.contact import random_run

@@ -23,7 +23,7 @@ class Outcome:
     what: list = field(default_factory=list)   # messages of failures
     ranks: list = field(default_factory=list)  # differences between numbers of ranks
     newton: list = field(default_factory=list)  # iterations of each step
-    notes: list = field(default_factory=list)
+    difference: float = None  # largest between the runs of the scene, relative; None: one run
 
     @property
     def is_wrong(self):
@@ -60,6 +60,9 @@ def summary(outcomes):
              "rank_differences": sum(bool(o.ranks) for o in outcomes),
              "newton_median": np.median([np.median(n) for n in counted]),
              "newton_p90": np.percentile([max(n) for n in counted], 90, method="higher")}
+    differences = [o.difference for o in outcomes if o.difference is not None]
+    if differences:
+        total["largest_difference"] = max(differences)
     return total, any(total[key] for key in ("failures", "hangs", "violations", "rank_differences"))
 
 
@@ -84,9 +87,9 @@ def run_all(options, names, run_one, title, columns, again):
             lines = [f"{outcome.line}  {outcome.verdict}"] + [f"  {what}" for what in outcome.what + outcome.ranks]
             if outcome.is_wrong:
                 lines.append(f'  again: {again} --only "{outcome.name}"')
-            print("\n".join(lines + outcome.notes), flush=True)
+            print("\n".join(lines), flush=True)
     total, wrong = summary(outcomes)
     refused = sum(outcome.verdict == "refused" for outcome in outcomes)
     print(f"\n{len(outcomes)} scenes{f', {refused} of them refused rightly' * bool(refused)}; random.csv, and the scenes that failed, in {options.output}")
-    print(last_line(total, dict.fromkeys(total, "g")))
+    print(last_line(total, dict.fromkeys(total, "g") | {"largest_difference": ".1e"}))
     return 1 if wrong else 0

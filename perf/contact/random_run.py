@@ -2,10 +2,10 @@
 import numpy as np
 import violation
 
-from perf.contact import contact, drawn_runs, limit_analysis, random_families, random_scenes
+from perf.contact import contact, drawn_runs, limit_analysis, other_ways, random_families, random_scenes
 from perf.contact.scenes import Scene
 
-EVERY = 10  # one scene in EVERY also runs on two ranks
+EVERY = 10  # one scene in EVERY also runs in one other way
 
 
 def judge(run, scene):
@@ -36,14 +36,11 @@ def end_of_failed_step(run, scene):
     return next(t for t in end * np.arange(1, steps + 1) / steps if t > reached + 1e-9 * end)
 
 
-def rank_differences(run, options):
-    """Returns the differences between one and two ranks, and notes on faces."""
-    other = contact.judge(contact.start(options, run.scene, 2))
-    if other.status != run.status:
-        return [f"status {run.status} on one rank, {other.status} on two: {other.last_line}"], []
-    run.failures.clear()
-    notes = contact.compare(run, other)
-    return list(run.failures), notes
+def ways(options, k):
+    """Returns the other ways in which scene k is run."""
+    if options.all_ways:
+        return other_ways.WAYS
+    return other_ways.WAYS[k // EVERY % len(other_ways.WAYS):][:1] if k % EVERY == 0 else ()
 
 
 def run_one(options, k):
@@ -53,20 +50,22 @@ def run_one(options, k):
     scene = folder / f"{drawn.name}.xml"
     if refusal:
         nothing = [drawn.name] + [None] * (len(contact.COLUMNS) - 1)
-        return drawn_runs.Outcome(drawn.name, contact.line(nothing), nothing + [""] * len(violation.PARTS) + [drawn.loads], "failed", [refusal])
-    run = contact.start(options, Scene(drawn.name, str(scene.resolve())), 1)
-    ranks, notes = [], []
+        return drawn_runs.Outcome(drawn.name, contact.line(nothing), nothing + [""] * len(violation.PARTS) + [drawn.loads, "", None], "failed", [refusal])
+    sets = list(other_ways.entries(ways(options, k)))
+    run, compared = contact.start(options, Scene(drawn.name, str(scene.resolve()), sets), 1), other_ways.Compared()
     try:
         verdict, what = judge(run, scene)
-        if k % EVERY == 0 and run.status is not None:
-            ranks, notes = rank_differences(run, options)
+        if run.status in (0, 3):
+            compared = other_ways.compare(ways(options, k), scene, run, options.binary, contact.LIMITS)
     except Exception as error:  # e.g. unreadable files; the other scenes continue
         verdict, what = "failed", [f"could not be judged: {type(error).__name__}: {error}"]
-    run.failures = what + ranks
+    what, verdict = what + compared.of_others, "violation" if compared.of_others and verdict == "ok" else verdict
+    run.failures = what + compared.of_ranks
     parts = [""] * len(violation.PARTS) if run.worst is None else run.worst.tolist()
     row = contact.row(run)
-    outcome = drawn_runs.Outcome(drawn.name, contact.line(row), row + parts + [drawn.loads], verdict, what, ranks, run.newton, notes)
-    drawn_runs.keep_or_remove(options.output, scene, run.directory.parent, what + ranks)
+    outcome = drawn_runs.Outcome(drawn.name, contact.line(row), row + parts + [drawn.loads, ", ".join(compared.ways), compared.largest], verdict, what,
+                                 compared.of_ranks, run.newton, compared.largest)
+    drawn_runs.keep_or_remove(options.output, scene, run.directory.parent, what + compared.of_ranks)
     return outcome
 
 
@@ -74,4 +73,4 @@ def main(options):
     names = {k: random_scenes.draw_scene(options.seed, k).name for k in range(options.random)}
     again = f"./sprekk perf contact --random {options.random} --seed {options.seed}"
     return drawn_runs.run_all(options, names, run_one, contact.line(contact.COLUMNS) + "  verdict",
-                              [*contact.COLUMNS, *violation.PARTS, "loads"], again)
+                              [*contact.COLUMNS, *violation.PARTS, "loads", "also", "difference"], again)

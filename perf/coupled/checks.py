@@ -9,7 +9,6 @@ from perf.coupled.balances import Balances
 BALANCE = 1e-6      # relative to the largest flow of the run
 OVERSHOOT = 1e-3    # relative to the range of the given temperatures
 CONTACT = 1e-8      # relative to displacement or traction, as in perf/contact
-DIFFERENCE = 1e-8   # between two runs of one scene
 ROUNDING = 1e-12    # of an aperture, relative to the displacement
 SAYS_OVERSHOOT = re.compile(r"warning: .*temperatures are more than .* K beyond the given ones")
 

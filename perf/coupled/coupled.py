@@ -1,21 +1,17 @@
 """Robustness of coupled flow, heat and deformation: runs scenes drawn at random, and checks their results."""
-import re
-import shutil
 from dataclasses import dataclass, field
-import xml.etree.ElementTree as xml
 
 from perf.common import options as common
 from perf.common import program, table
 from perf.common.scene_file import save
-from perf.contact import drawn_runs
-from perf.coupled import checks, coupled_scenes, differences
+from perf.contact import drawn_runs, other_ways
+from perf.coupled import checks, coupled_scenes
 from perf.coupled.written import Written
 
 LIMITS = {"cpu": 60, "clock": 600}
 COLUMNS = {**dict.fromkeys(("scene", "cells", "steps", "median", "max", "cuts"), "g"),
            **dict.fromkeys(("fluid", "energy", "overshoot", "contact", "difference"), ".0e"), "also": "", "seconds": ".1f"}
 MEASURED = list(COLUMNS)[6:11]
-AGAIN = ("2 ranks", "renamed", "restart", "3 ranks", "renumbered", "repeated")  # scene k is run in way k of these, too
 ATTEMPTS = 10
 # scenes with these messages are drawn again
 NO_SCENE = ("slip would produce energy", "too large for the cell at", "the hydraulic aperture is")
@@ -56,72 +52,9 @@ def judge(ended, directory):
     return run
 
 
-def again(options, way, scene, directory, run):
-    """Runs the scene in another way. Returns (largest difference, messages)."""
-    other = directory.with_name(re.sub(r"\W", "_", way))
-    ranks, entries, rename = 1, (), str
-    if way.endswith("ranks"):
-        ranks = int(way[0])
-    elif way == "renumbered":
-        entries = ("Mesh.renumbering seed=7",)
-    elif way == "renamed":
-        scene, rename = renamed(scene)
-    elif way == "restart":
-        return restarted(options, scene, directory, run)
-    ended = program.run(options.binary, scene, other, entries, ranks, **LIMITS)
-    if ended.status != run.ended.status:
-        return None, [f"{way}: status {ended.status} instead of {run.ended.status}: {ended.reason}"]
-    return compared(way, run, Written(other, ended.results), 0.0 if way == "repeated" else checks.DIFFERENCE, rename)
-
-
-def restarted(options, scene, directory, run):
-    """Repeats the last step from the checkpoint before it. The results must be bitwise identical."""
-    other = directory.with_name("restart")
-    shutil.copytree(directory, other)
-    checkpoints = sorted((folder for folder in (other / "checkpoints").iterdir() if folder.is_dir() and folder.name.isdigit()),
-                         key=lambda folder: int(folder.name))
-    if len(checkpoints) < 2:
-        return None, [f"restart: {len(checkpoints)} checkpoints after {len(run.ended.results['steps'])} steps"]
-    shutil.rmtree(checkpoints[-1])
-    ended = program.run(options.binary, scene, other, CHECKPOINTS, **LIMITS, words=("--restart",), clear=False)
-    if ended.status != 0 or not ended.results.get("restarts"):
-        return None, [f"restart: status {ended.status}: {ended.last_line}"]
-    return compared("restart", run, Written(other, ended.results), 0.0)
-
-
-def compared(way, run, other, allowed, rename=str):
-    size, what = differences.largest(run.written, other, rename)
-    wrong = [] if size <= allowed else [f"{way}: {what} differs by {size:.1e} of the largest"]
-    return size, wrong
-
-
-def renamed(scene):
-    """Writes a copy of the scene with fractures renamed in the opposite order. Returns (file, map to the old names)."""
-    tree = xml.parse(scene)
-    names = [node.get("name") for node in tree.getroot().find("ParameterList[@name='Fractures']")]
-    new = {name: f"g{len(names) - k:02}" for k, name in enumerate(names)}
-    for path in ("ParameterList[@name='Fractures']", "ParameterList[@name='Mesh']/ParameterList[@name='fractures']"):
-        for node in tree.getroot().findall(f"{path}/ParameterList"):
-            node.set("name", new[node.get("name")])
-    for node in tree.getroot().iter("Parameter"):
-        if node.get("name") == "fracture":
-            node.set("value", new[node.get("value")])
-        elif node.get("name") == "cuts":
-            node.set("value", "{" + ", ".join(new[name.strip()] for name in node.get("value").strip("{}").split(",")) + "}")
-    copy = scene.with_suffix(".renamed.xml")
-    tree.write(copy)
-    back = {value: key for key, value in new.items()}
-    return copy, lambda name: back.get(name, name)
-
-
-CHECKPOINTS = ("Output.checkpoints.steps=1",)
-
-
-def ways(options, k, run):
+def ways(options, k):
     """Returns the other ways in which scene k is run."""
-    chosen = AGAIN if options.all_ways else AGAIN[k % len(AGAIN):][:1]
-    no_fractures, one_step = run.written.states[0].fractures is None, len(run.ended.results["steps"]) < 2
-    return [way for way in chosen if not (way == "renamed" and no_fractures or way == "restart" and one_step)]
+    return other_ways.WAYS if options.all_ways else other_ways.WAYS[k % len(other_ways.WAYS):][:1]
 
 
 def draw_and_run(options, k):
@@ -131,8 +64,7 @@ def draw_and_run(options, k):
         scene = options.output / "drawn" / f"{drawn.name}.xml"
         save(drawn.tree, scene, drawn.comment)
         directory = options.output / "runs" / drawn.name / "first"
-        entries = CHECKPOINTS if options.all_ways or AGAIN[k % len(AGAIN)] == "restart" else ()
-        ended = program.run(options.binary, scene, directory, entries, **LIMITS)
+        ended = program.run(options.binary, scene, directory, other_ways.entries(ways(options, k)), **LIMITS)
         if ended.status != 1 or not any(words in ended.words for words in NO_SCENE):
             break
     return drawn, scene, directory, ended
@@ -143,20 +75,18 @@ def run_one(options, k):
     drawn, scene, directory, ended = draw_and_run(options, k)
     try:
         run = judge(ended, directory)
-        run.numbers["also"] = []
         if not run.wrong and run.written:
-            for way in ways(options, k, run):
-                size, lines = again(options, way, scene, directory, run)
-                run.numbers["also"].append(way)
-                run.numbers["difference"] = max(size or 0.0, run.numbers.get("difference") or 0.0)
-                (run.ranks if way.endswith("ranks") else run.violations).extend(lines)
+            compared = other_ways.compare(ways(options, k), scene, ended, options.binary, LIMITS)
+            run.numbers |= {"also": compared.ways, "difference": compared.largest}
+            run.ranks += compared.of_ranks
+            run.violations += compared.of_others
     except Exception as error:  # e.g. unreadable files; the other scenes continue
         if options.jobs == 1 and options.trace:
             raise
         run = Judged(ended, wrong=[f"could not be judged: {type(error).__name__}: {error}"])
     row = values(drawn.name, run)
     verdict = "hang" if ended.status is None else "failed" if run.wrong else "violation" if run.violations else "ok"
-    outcome = drawn_runs.Outcome(drawn.name, line(row), row, verdict, run.wrong + run.violations, run.ranks, ended.newton)
+    outcome = drawn_runs.Outcome(drawn.name, line(row), row, verdict, run.wrong + run.violations, run.ranks, ended.newton, run.numbers.get("difference"))
     drawn_runs.keep_or_remove(options.output, scene, directory.parent, outcome.what + outcome.ranks)
     return outcome
 
@@ -179,7 +109,7 @@ def main(words):
     parser = common.parser("coupled", __doc__, None, "scenes", sets=False)
     drawn_runs.add_options(parser)
     parser.set_defaults(random=100)
-    parser.add_argument("--all-ways", action="store_true", help="also run each scene in all other ways: on several ranks, from a checkpoint, renamed, ...")
+    other_ways.add_option(parser)
     parser.add_argument("--trace", action="store_true", help="with --jobs 1: stop at an internal error of the checks")
     options = parser.parse_args(words)
     names = {k: coupled_scenes.draw_scene(options.seed, k).name for k in range(options.random)}

@@ -1,6 +1,6 @@
 """Differences between the results of two runs of one scene, relative to the largest values of the first.
 
-Cells and faces are matched by place, fractures by name."""
+Cells and faces are matched by place, fractures by name, nodes by their cell and their place in it."""
 import numpy as np
 
 LENGTHS = ("displacement", "jump", "opening", "slip", "widening")
@@ -95,6 +95,15 @@ def order(grid, names=()):
     return np.lexsort(keys)
 
 
+def at_nodes(grid, cells, name):
+    """Values of point data at the nodes of these cells: [cell, node, ...], with nodes ordered by place."""
+    nodes = grid.cells[cells]
+    extent = max(np.ptp(grid.points, axis=0).max(), 1e-300)
+    place = np.round(grid.points[nodes] / extent * 1e7 + 0.3123).astype(np.int64)
+    nodes = np.take_along_axis(nodes, np.lexsort((place[..., 2], place[..., 1], place[..., 0])), axis=1)
+    return grid.point_data[name][nodes]
+
+
 def largest(one, other, rename=lambda name: name, scales=None):
     """Returns (relative difference, array and time) of two runs. `rename` maps fracture names of the other run to
     the first."""
@@ -111,6 +120,10 @@ def largest(one, other, rename=lambda name: name, scales=None):
                 if name not in LEFT_OUT:
                     size = np.abs(values[i] - right.cell_data[name][j]).max(initial=0) / scales.of(name)
                     worst = max(worst, (size, f'"{name}" at t = {a.time:g}'))
+            for name in left.point_data:
+                if name not in LEFT_OUT:
+                    difference = at_nodes(left, i, name) - at_nodes(right, j, name)
+                    worst = max(worst, (np.abs(difference).max(initial=0) / scales.of(name), f'"{name}" at t = {a.time:g}'))
     return max(worst, of_numbers(one, other, rename, scales))
 
 

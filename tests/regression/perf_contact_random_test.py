@@ -228,6 +228,35 @@ class Verdicts(ProgramTest):
             run = contact.Run(self.folder / drawn.name, 0, "", results=results, scene=Scene(drawn.name, str(path)))
             self.assertEqual(random_run.judge(run, path), ("ok", []))
 
+    def test_springs_leave_the_elastic_jump_of_stiffening_joints_alone(self):
+        """The tangential stiffness grows with the compression. Newton's method fails, and proximal continuation follows. Its springs
+        acted on a part of the elastic jump; then no stiffness of the springs converged."""
+        drawn, refusal = random_scenes.write(71003, 7, self.folder, program.PROGRAM)
+        self.assertEqual(refusal, "")
+        path = self.folder / f"{drawn.name}.xml"
+        self.call("run", path, "--output", self.folder / "out", "--set", "Time.end=0.015625", "--set", "Time.steps=1",
+                  "--set", "Time.maximum halvings=0")
+        results = json.loads((self.folder / "out/results.json").read_text())
+        run = contact.Run(self.folder / "out", 0, "", results=results, scene=Scene(drawn.name, str(path)))
+        self.assertEqual(random_run.judge(run, path), ("ok", []))
+
+    def test_all_ways_lead_to_the_same_fields(self):
+        """Runs one scene in seven ways, and again with a program that changes the rock of renumbered meshes."""
+        inexact = self.folder / "inexact"
+        inexact.write_text(f'#!/bin/sh\ncase "$*" in *renumbering*) set -- "$@" --set "Materials.rock.Young\'s modulus=1e10";; esac\n'
+                           f'exec {program.PROGRAM} "$@"\n')
+        inexact.chmod(0o755)
+        drawn = random_scenes.draw_scene(7, 9)
+        for binary, status in ((program.PROGRAM, 0), (inexact, 1)):
+            command = [sys.executable, "-B", ROOT / "perf", "contact", "--random", "12", "--seed", "7", "--only", drawn.name,
+                       "--all-ways", "--jobs", "1", "--binary", binary, "--output", self.folder / "out"]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=program.TIME_LIMIT)
+            self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+            largest = float(done.stdout.split("largest_difference=")[1])
+            (self.assertGreater if status else self.assertLess)(largest, 1e-8)
+            self.assertEqual("renumbered: " in done.stdout, status == 1)
+            self.assertIn("2 ranks, renamed, restart, 3 ranks, renumbered, repeated", (self.folder / "out/random.csv").read_text())
+
     def test_scenes_that_fail_are_saved(self):
         broken = self.folder / "broken"
         broken.write_text("#!/bin/sh\necho no good; exit 5\n")

@@ -176,6 +176,12 @@ class Coupled(ProgramTest):
         size, what = differences.largest(one, same)
         self.assertGreater(size, 1e-8)
         self.assertIn('"pressure" at t = 200000', what)
+        same = self.again(one)
+        displacement = same.states[1].bulk.point_data["displacement"]
+        displacement[3, 0] += 1e-7 * max(np.abs(state.bulk.point_data["displacement"]).max() for state in one.states)
+        size, what = differences.largest(one, same)
+        self.assertGreater(size, 1e-8)
+        self.assertIn('"displacement" at t = 200000', what)
 
     def test_sizes_and_boundaries_of_cells(self):
         """For each cell type: volume of the box, and the volume swept by an extension."""

@@ -26,8 +26,8 @@ struct ShiftedRock {
   Rock rock;
   fields::BlockVector x;
 
-  explicit ShiftedRock(const std::string& cell)
-      : rock(make_rock(cut_box(cell, false), full_joint())), x(rock.system->initial()) {}
+  explicit ShiftedRock(const std::string& cell, const laws::JointParameters& joint = full_joint())
+      : rock(make_rock(cut_box(cell, false), joint)), x(rock.system->initial()) {}
 
   /// Sets jump and traction of all faces, in the frame of the faces.
   void set(std::array<Real, 3> jump, std::array<Real, 3> traction) {
@@ -209,6 +209,27 @@ TEST(ElasticPlasticJump, ProximalTermLeavesTheElasticJumpAlone) {
     s.rock.system->raw_residual(s.x, r);
     for (LocalIndex f = 0; f < s.rock.mesh->n_owned_fracture_faces; ++f)
       for (int i = 1; i < dim; ++i) EXPECT_NEAR(r[2]->getData()[f * dim + i], 0, 1e-12) << cell;
+  }
+}
+
+/// Likewise if the tangential stiffness K_t (1 + N/N_r) depends on the compression N: here it is twice as large as
+/// without compression. A spring against w_t - lambda_t / K_t would pull with 0.5 of the elastic jump.
+TEST(ElasticPlasticJump, ProximalTermLeavesANonlinearElasticJumpAlone) {
+  auto joint = full_joint();
+  joint.law.elastic = laws::PowerShear{.stiffness = 2, .reference = 50, .exponent = 1};
+  for (const auto& cell : all_cells) {
+    ShiftedRock s(cell, joint);
+    const int dim = s.rock.dim();
+    auto r = fields::create_like(s.x);
+    const Real closed = 0.01 - 0.1 * 50 / (0.5 + 50);
+    for (const Real stiffness : {2, 1000}) {
+      s.set({closed, 0, 0}, {-50, 0, 0});
+      s.rock.system->globalisation().set_proximal_term(stiffness, s.x);
+      s.set({closed, 0.075, dim == 3 ? -0.1 : 0}, {-50, 0.3, dim == 3 ? -0.4 : 0});
+      s.rock.system->raw_residual(s.x, r);
+      for (LocalIndex f = 0; f < s.rock.mesh->n_owned_fracture_faces; ++f)
+        for (int i = 1; i < dim; ++i) EXPECT_NEAR(r[2]->getData()[f * dim + i], 0, 1e-11) << cell;
+    }
   }
 }
 

@@ -73,9 +73,6 @@ TEST(LeakOff, AFractureGrowsAsFarAsItsBalanceAllows) {
 
 /// Layers of hexahedra give nearly the result of quadrilaterals. All ranks find that of a single rank, and a restored
 /// model continues with the same steps.
-///
-/// Runs with a step to 4 s end in one of two states, which differ in the broken length by 1e-3: round-off decides
-/// between them.
 TEST(LeakOff, IsTheSameInThreeDimensionsOnAllRanksAndAfterARestart) {
   std::vector<std::array<Real, 2>> all;
   for (const std::string cell : {"quadrilateral", "hexahedron"}) {
@@ -85,11 +82,11 @@ TEST(LeakOff, IsTheSameInThreeDimensionsOnAllRanksAndAfterARestart) {
     model::Model model(scene, Tpetra::getDefaultComm()), again(scene, Tpetra::getDefaultComm()),
         alone(scene, rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF)));
     const auto sums = [&](model::Model& of) { return std::array{leaked(of) / width, opened(of, true).broken / width}; };
-    for (const Real t : {0.5, 2.0, 5.0, 8.0}) {
+    for (const Real t : {0.5, 2.0, 4.0, 6.0, 8.0}) {
       ASSERT_TRUE(model.step_to(t).converged) << cell << t;
       EXPECT_NEAR((stored(model) + leaked(model)) / (2e-5 * width * t), 1, 1e-10) << cell << t;
-      if (t == 5) again.restore(model.save());
-      if (t > 5) {
+      if (t == 4) again.restore(model.save());
+      if (t > 4) {
         ASSERT_TRUE(again.step_to(t).converged);
       }
       ASSERT_TRUE(alone.step_to(t).converged);
@@ -103,6 +100,23 @@ TEST(LeakOff, IsTheSameInThreeDimensionsOnAllRanksAndAfterARestart) {
     }
   }
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(all[1][k] / all[0][k], 1, 1e-2) << k;
+}
+
+/// The openings of bonded faces at rest are round-off, which depends on the numbers of nodes and cells. The derivative
+/// of their volume must not: the steps to 3 s and 4 s then end in other states, with less than half of the broken
+/// length.
+TEST(LeakOff, DoesNotDependOnTheSignOfRoundOff) {
+  std::vector<Real> broken;
+  for (const int seed : {0, 2, 9}) {
+    auto scene = small_body("hexahedron");
+    scene.fractures.at("growing").leak_off = leak_off / 4;
+    if (seed > 0) scene.mesh.renumbering_seed = seed;
+    model::Model model(scene, Tpetra::getDefaultComm());
+    for (const Real t : {0.5, 1.0, 2.0, 3.0, 4.0}) ASSERT_TRUE(model.step_to(t).converged) << seed << " " << t;
+    broken.push_back(opened(model, true).broken);
+  }
+  EXPECT_GT(broken[0], 1e-4);
+  for (const Real each : broken) EXPECT_NEAR(each / broken[0], 1, 1e-8);
 }
 
 /// A bisected mesh has the same leaked fluid, and in the following steps the balance of all fluid since the start is
