@@ -318,17 +318,22 @@ class Wrong(unittest.TestCase):
             model.run()
         self.assertEqual(model.time, 0)
 
-    def test_growth_with_a_given_pressure_is_refused(self):
-        model = sprekk.Model(sprekk.Scene(ROOT / "xml/growth/wing_cracks_2d.xml"), given_pressure=0)
-        with self.assertRaisesRegex(sprekk.Error, 'Growth: run.. cannot extend fractures of a Model with "given_pressure"'):
+    def test_growth_with_own_modules_is_refused(self):
+        class Nothing(sprekk.Module):
+            name = "nothing"
+
+            def blocks(self, mesh):
+                return [sprekk.Block("cells", ["displacement"], ["displacement"], lambda x, state: {})]
+        model = sprekk.Model(sprekk.Scene(ROOT / "xml/growth/wing_cracks_2d.xml"), modules=[Nothing()])
+        with self.assertRaisesRegex(sprekk.Error, 'Growth: run.. cannot extend fractures of a Model with "modules"'):
             model.run()
         self.assertEqual(model.time, 0)
 
 
 class Growth(unittest.TestCase):
-    ENTRIES = {"Mesh": {"lower corner": [0, -4], "upper corner": [2, 4], "cells": [10, 40]}, "Growth": {"segment": 0.1}, "Output": {"vtu": False},
-               "Fractures.crack.toughness": "1e6*(1 + 4*(x - 0.6))", "Time": {"schedule": [1.4, 1.7]},
-               "Boundary conditions": {side: {"boundary": side, "displacement": [0, "free"]} for side in ("west", "east")}}
+    ENTRIES = ["Mesh.lower corner={0, -4}", "Mesh.upper corner={2, 4}", "Mesh.cells={10, 40}", "Growth.segment=0.1", "Output.vtu=false",
+               "Fractures.crack.toughness=1e6*(1 + 4*(x - 0.6))", "Time.schedule={1.4, 1.7}",
+               *(f"Boundary conditions.{side}.{entry}" for side in ("west", "east") for entry in (f"boundary={side}", "displacement={0, free}"))]
 
     def test_run_extends_fractures_as_the_program(self):
         """Tips, energies and directions of run() and of its files are those of the program; older fields are stale."""
