@@ -37,6 +37,7 @@ PICTURES = {
     "flow": "flow",
     "gmsh": "bulk",
     "growth": "bulk",
+    "growth/porous_2d": "growth flow",
     "growth/reorientation_2d": "growth",
     "growth/thermal_cracks_2d": "growth",
     "growth/wing_cracks_2d": "growth",

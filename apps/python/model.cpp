@@ -8,6 +8,7 @@
 #include "base/over_ranks.hpp"
 #include "base/xml.hpp"
 #include "model/fracture_table.hpp"
+#include "model/growth.hpp"
 #include "model/results.hpp"
 #include "model/steps.hpp"
 #include "physics/poroelasticity/given_pressure.hpp"
@@ -106,11 +107,14 @@ class ModelHandle {
 
 /// Loop over the steps of a scene.
 struct StepsHandle {
+  explicit StepsHandle(ModelHandle& of) : model(of), steps(*of), log(*of->mesh().comm, false) { tips.begin(*of); }
   ModelHandle& model;
   model::Steps steps;
+  base::Log log;
+  model::Tips tips;
 
   model::StepTaken take() {
-    const auto taken = steps.take();
+    const auto taken = tips.take(*model, steps, log);
     model.check();
     return taken;
   }
@@ -315,9 +319,7 @@ void bind_reports(py::module_& m) {
 void bind_runs(py::module_& m) {
   using model::Results;
   py::class_<StepsHandle>(m, "Steps")
-      .def(py::init([](ModelHandle& model) {
-             return std::unique_ptr<StepsHandle>(new StepsHandle{model, model::Steps(*model)});
-           }),
+      .def(py::init([](ModelHandle& model) { return freely([&] { return std::make_unique<StepsHandle>(model); }); }),
            py::keep_alive<1, 2>(), py::call_guard<Alone>())
       .def("any", [](const StepsHandle& self) { return self.steps.any(); })
       .def("share_done", [](const StepsHandle& self) { return self.steps.share_done(); })

@@ -14,7 +14,7 @@ OF_FRACTURES = [
     ("area_at_start", "area at the start", "m²"),
     ("first_slip", "first slip after", "s"),
     ("fraction_slip", "slipping at the end", "%"),
-    ("fraction_has_slipped", "has slipped", "%"),
+    ("fraction_has_slipped", "slipped in contact", "%"),
     ("fraction_open", "open at the end", "%"),
     ("mean_slip", "mean slip", "m"),
     ("max_slip", "largest slip", "m"),

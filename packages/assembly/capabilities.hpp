@@ -51,6 +51,10 @@ class Transfer {
   virtual void pass_on(const State& state, std::vector<std::pair<History, View<Real**>>>& histories) const {}
   /// Adapts the module to a state and histories taken over from another system.
   virtual void take_over(State& state) const {}
+  /// Replaces histories on cells by those whose integrals, or sums of amounts, a transfer to a changed mesh preserves.
+  virtual void to_conserved(State& state) const {}
+  /// Restores the histories from those of to_conserved(), on the changed mesh.
+  virtual void from_conserved(State& state) const {}
   /// Receives the unbalanced residual after take_over(), [field](owned row), zero in rows of prescribed unknowns.
   virtual void take_unbalanced(State& state, const Rows& residual) const {}
 };

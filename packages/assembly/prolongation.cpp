@@ -2,10 +2,13 @@
 
 #include "assembly/reference_cell.hpp"
 #include "base/host_table.hpp"
+#include "base/over_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <unordered_map>
 
 namespace sprekk::assembly {
 
@@ -101,7 +104,8 @@ std::vector<Real> functions_at(const Real* nodes, const mesh::Vector& x, const s
 
 }  // namespace
 
-Prolongation::Prolongation(const Mesh& coarse, const Mesh& fine, const std::vector<GlobalIndex>& parent)
+Prolongation::Prolongation(const Mesh& coarse, const Mesh& fine, const std::vector<GlobalIndex>& parent,
+                           const std::vector<mesh::Overlap>& overlaps)
     : coarse_(&coarse), fine_(&fine) {
   const auto comm = fine_->comm;
   std::vector<GlobalIndex> on_0(comm->getRank() == 0 ? parent.size() : 0), here;
@@ -116,11 +120,16 @@ Prolongation::Prolongation(const Mesh& coarse, const Mesh& fine, const std::vect
   const auto numbers = own.getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t c = 0; c < here.size(); ++c) parents_.push_back(static_cast<GlobalIndex>(numbers(c, 0)));
   const auto of_cell = parents_;
+  const auto in_parts = local_parts(overlaps, here);
+  for (const auto& [cell, part] : in_parts) parents_.push_back(part.before);
   std::sort(parents_.begin(), parents_.end());
   parents_.erase(std::unique(parents_.begin(), parents_.end()), parents_.end());
-  for (const auto id : of_cell)
-    parent_.push_back(
-        static_cast<LocalIndex>(std::lower_bound(parents_.begin(), parents_.end(), id) - parents_.begin()));
+  const auto index_of = [&](GlobalIndex id) {
+    return static_cast<LocalIndex>(std::lower_bound(parents_.begin(), parents_.end(), id) - parents_.begin());
+  };
+  for (const auto id : of_cell) parent_.push_back(index_of(id));
+  for (const auto& [cell, part] : in_parts)
+    parts_[cell].push_back({index_of(part.before), part.area, {part.centre[0], part.centre[1], 0}});
   order_.resize(here.size());
   std::iota(order_.begin(), order_.end(), 0);
   std::sort(order_.begin(), order_.end(), [&](LocalIndex a, LocalIndex b) { return here[a] < here[b]; });
@@ -134,6 +143,28 @@ Prolongation::Prolongation(const Mesh& coarse, const Mesh& fine, const std::vect
   }
   coordinates_ = of_parents(coordinates, n * dim);
   tips_ = of_parents(tips, n);
+}
+
+/// Returns the overlaps of local fine cells, with these cells. `here`: numbers of the local cells.
+std::vector<std::pair<LocalIndex, mesh::Overlap>> Prolongation::local_parts(const std::vector<mesh::Overlap>& overlaps,
+                                                                            const std::vector<GlobalIndex>& here) {
+  std::vector<Real> numbers;
+  if (fine_->comm->getRank() == 0)
+    for (const auto& one : overlaps)
+      numbers.insert(numbers.end(), {Real(one.cell), Real(one.before), one.area, one.centre[0], one.centre[1]});
+  numbers = base::of_rank(*fine_->comm, 0, numbers);
+  has_overlaps_ = !numbers.empty();
+  std::unordered_map<GlobalIndex, LocalIndex> local;
+  for (std::size_t c = 0; c < here.size() && has_overlaps_; ++c) local[here[c]] = static_cast<LocalIndex>(c);
+  std::vector<std::pair<LocalIndex, mesh::Overlap>> parts;
+  for (std::size_t k = 0; k < numbers.size(); k += 5) {
+    const auto cell = static_cast<GlobalIndex>(numbers[k]);
+    if (const auto found = local.find(cell); found != local.end())
+      parts.push_back(
+          {found->second,
+           {cell, static_cast<GlobalIndex>(numbers[k + 1]), numbers[k + 2], {numbers[k + 3], numbers[k + 4]}}});
+  }
+  return parts;
 }
 
 /// Returns the numbers of the parents, [parent * n + k], from those of owned coarse cells.
@@ -200,7 +231,74 @@ void Prolongation::add_weighted(const Field& field, const View<Real**>& coarse, 
   Kokkos::deep_copy(fine, sums);
 }
 
+/// Returns the gradients of a field on cells, [(parent * components + component) * dim + direction]: of the linear
+/// function with the least squares of deviations in the cells of the same region at the nodes of the parent.
+std::vector<Real> Prolongation::gradients(const Field& field, const View<Real**>& values) const {
+  const fields::Layout layout(field, *coarse_);
+  fields::Vector owned(layout.owned()), with_ghosts(layout.ghosted());
+  const int n = field.n_components, n_nodes = coarse_->nodes_per_cell();
+  Kokkos::deep_copy(fields::by_entity(owned, n), values);
+  with_ghosts.doImport(owned, *layout.import(), Tpetra::REPLACE);
+  const auto all = with_ghosts.getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<std::vector<LocalIndex>> at_node(coarse_->n_nodes());
+  for (LocalIndex i = 0; i < coarse_->n_cells() * n_nodes; ++i) at_node[coarse_->cells[i]].push_back(i / n_nodes);
+  std::vector<Real> of_cells(std::size_t(coarse_->n_owned_cells) * n * 2, 0);
+  for (LocalIndex c = 0; c < coarse_->n_owned_cells; ++c) {
+    const auto centre = mesh::cell_centre(*coarse_, c);
+    std::set<LocalIndex> around;
+    for (int a = 0; a < n_nodes; ++a)
+      for (const auto other : at_node[coarse_->cells[c * n_nodes + a]])
+        if (other != c && coarse_->cell_region[other] == coarse_->cell_region[c]) around.insert(other);
+    Real xx = 0, xy = 0, yy = 0;
+    std::vector<std::array<Real, 2>> right(n);
+    for (const auto other : around) {
+      const auto r = mesh::cell_centre(*coarse_, other) - centre;
+      xx += r[0] * r[0], xy += r[0] * r[1], yy += r[1] * r[1];
+      for (int k = 0; k < n; ++k)
+        for (int i : {0, 1}) right[k][i] += r[i] * (all(other * n + k, 0) - all(c * n + k, 0));
+    }
+    const Real determinant = xx * yy - xy * xy;
+    for (int k = 0; k < n && determinant > 1e-6 * (xx + yy) * (xx + yy); ++k) {
+      of_cells[(c * n + k) * 2] = (yy * right[k][0] - xy * right[k][1]) / determinant;
+      of_cells[(c * n + k) * 2 + 1] = (xx * right[k][1] - xy * right[k][0]) / determinant;
+    }
+  }
+  return of_parents(of_cells, n * 2);
+}
+
+/// Adds a field on cells to a mesh with overlaps: amounts by shares of area, otherwise means of linear functions.
+void Prolongation::add_to_cells(const Field& field, const View<Real**>& coarse, const View<Real**>& fine) const {
+  const auto values = table(field, coarse);
+  const auto slopes = field.is_amount ? std::vector<Real>() : gradients(field, coarse);
+  const auto sums = base::to_host(fine);
+  const int n = field.n_components;
+  for (LocalIndex c = 0; c < fine_->n_owned_cells; ++c) {
+    const auto found = parts_.find(c);
+    if (found == parts_.end()) {
+      const Real share = field.is_amount ? share_of_volume(c) : 1;
+      for (int k = 0; k < n; ++k) sums(c, k) += share * values[std::size_t(parent_[c]) * n + k];
+      continue;
+    }
+    Real area = 0;
+    for (const auto& part : found->second) area += part.area;
+    for (const auto& [parent, of_part, centre] : found->second) {
+      const auto X = corners_of(parent);
+      const Point off = centre - (Real(1) / 3) * (X[0] + X[1] + X[2]);
+      const Real whole = cross(X[1] - X[0], X[2] - X[0])[2] / 2;
+      for (int k = 0; k < n; ++k) {
+        const auto at = std::size_t(parent) * n + k;
+        const Real value = field.is_amount
+                               ? values[at] / whole
+                               : (values[at] + slopes[2 * at] * off[0] + slopes[2 * at + 1] * off[1]) / area;
+        sums(c, k) += of_part * value;
+      }
+    }
+  }
+  Kokkos::deep_copy(fine, sums);
+}
+
 void Prolongation::add(const Field& field, const View<Real**>& coarse, const View<Real**>& fine) const {
+  if (has_overlaps_ && field.entity == Entity::cell) return add_to_cells(field, coarse, fine);
   add_weighted(field, coarse, field.entity, fine,
                [&](LocalIndex cell, int place, Weights& weights) { return set(field, cell, place, weights); });
 }
@@ -214,12 +312,11 @@ void Prolongation::add_enrichment(const Field& enriching, const View<Real**>& co
   });
 }
 
-std::array<Prolongation::Point, 4> Prolongation::parent_corners(LocalIndex cell) const {
+std::array<Prolongation::Point, 4> Prolongation::corners_of(LocalIndex parent) const {
   const int dim = coarse_->dim();
   std::array<Point, 4> corners{};
   for (int k = 0; k <= dim; ++k)
-    std::copy_n(&coordinates_[(std::size_t(parent_[cell]) * coarse_->nodes_per_cell() + k) * dim], dim,
-                corners[k].begin());
+    std::copy_n(&coordinates_[(std::size_t(parent) * coarse_->nodes_per_cell() + k) * dim], dim, corners[k].begin());
   if (dim == 2) corners[3] = corners[0] + Point{0, 0, 1};
   return corners;
 }

@@ -299,12 +299,12 @@ std::vector<std::pair<fields::Field, View<Real**>>> System::passed_on(const Bloc
   return all;
 }
 
-void System::take_over(const BlockVector& x) {
+void System::convert(const BlockVector& x, void (Transfer::*how)(State&) const) {
   const auto there = at(x);
   for (const auto& module : structure_.modules) {
     if (!module.transfer) continue;
     auto s = module.at(there);
-    module.transfer->take_over(s);
+    (module.transfer->*how)(s);
   }
 }
 

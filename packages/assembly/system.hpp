@@ -89,7 +89,11 @@ class System : public fields::BlockProblem, private contact::Equations {
   /// Collective.
   std::vector<std::pair<fields::Field, View<Real**>>> passed_on(const fields::BlockVector& x);
   /// Lets modules take over x and the histories of another system. Call before resume(). Collective.
-  void take_over(const fields::BlockVector& x);
+  void take_over(const fields::BlockVector& x) { convert(x, &Transfer::take_over); }
+  /// Converts histories before and after their transfer to a changed mesh, see Transfer::to_conserved. Afterwards, the
+  /// system before the change is invalid. Call from_conserved() before resume(). Collective.
+  void to_conserved(const fields::BlockVector& x) { convert(x, &Transfer::to_conserved); }
+  void from_conserved(const fields::BlockVector& x) { convert(x, &Transfer::from_conserved); }
   /// Passes the unbalanced residual at x to the modules, after resume(). Collective.
   void pass_unbalanced(const fields::Evaluation& x);
 
@@ -140,6 +144,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   void residual_at(const fields::Evaluation& x, const State& state, fields::BlockVector& r);
   void assemble(const BoundModule& module, const State& state, fields::BlockMatrix& J) const;
   fields::BlockVector loads(const fields::Evaluation& x, Real t, Real dt);
+  void convert(const fields::BlockVector& x, void (Transfer::*how)(State&) const);
   void watch_contact();
   std::vector<contact::Support> supports_of(int block) const;
   bool linear_part_is_invariant() const;

@@ -36,7 +36,9 @@ bool inside(Reading& reading, const std::string& suffix, Real value) {
   if (is_lost)
     reading.fail(suffix, fmt::format("is {}, too small for a double; give 0, or at least {:.3g}", value, smallest));
   if (is_lost || reading.bounds.contains(value)) return !is_lost;
-  reading.fail(suffix, fmt::format("is {}, must be {}", number_text(value), reading.bounds.text()));
+  const bool has_unit = reading.unit != "-" && reading.unit.find(',') == std::string::npos;
+  reading.fail(suffix, fmt::format("is {}, must be {}{}", number_text(value), reading.bounds.text(),
+                                   has_unit ? fmt::format(" (unit: {})", reading.unit) : ""));
   return false;
 }
 

@@ -16,10 +16,12 @@ struct Extension {
 /// Result of an extension: nothing, a new tip, a junction with another fracture, or a tip beyond it.
 struct Extended {
   enum How { none, tip, junction, crossing };
+  enum Obstacle { flat_cells, boundary, own_fracture, other_fracture };
   How how = none;
   std::array<Real, 2> begin = {}, end = {};  ///< of the last straight part, m
-  int met = -1;                              ///< single fracture of a junction or crossing; -1: of a round before
-  bool is_ahead = false;                     ///< the direction of the extension leads through this fracture
+  int met = -1;           ///< single fracture of a junction or crossing, or the obstacle; -1: of a round before
+  bool is_ahead = false;  ///< the direction of the extension leads through this fracture
+  Obstacle obstacle = flat_cells;  ///< within half of the length, or cells would be too flat, if there is no extension
   bool operator==(How other) const { return how == other; }
 };
 
@@ -35,6 +37,13 @@ struct MeshChange {
   std::vector<Extension> extensions = {};
   std::vector<Turn> turns = {};
   bool is_none() const { return cells.empty() && extensions.empty() && turns.empty(); }
+};
+
+/// Intersection of a cell with a cell of the mesh before a change, in 2D.
+struct Overlap {
+  GlobalIndex cell, before;    ///< numbers in both meshes
+  Real area;                   ///< m^2
+  std::array<Real, 2> centre;  ///< centroid, m
 };
 
 /// Mesh of triangles or tetrahedra, refined by the bisection of Arnold, Mukherjee and Pouly (2000).
@@ -70,6 +79,9 @@ class Bisection {
   /// Rotates the nodes of an extension, and the nodes around it by a part of the angle. Returns false, without a
   /// change, if cells would become too flat. 2D.
   bool turn(const Turn& turn);
+  /// Returns the intersections of the cells with those of the mesh before, where cells were bisected or nodes have moved.
+  /// `parent` as in refine(). 3D: none.
+  std::vector<Overlap> overlaps(const Bisection& before, const std::vector<GlobalIndex>& parent) const;
 
   /// Returns the present mesh, split along its fractures. Nodes preserve their numbers; copies of split nodes follow
   /// the new nodes. Children replace their parent in the order of cells. Cells of order 2 have straight edges.

@@ -268,7 +268,7 @@ Extended Bisection::extend(const Extension& wanted, std::vector<GlobalIndex>& pa
   auto e = wanted;
   refine_near(e, e.size, parent);
   if (norm(e.direction) == 0) return {Extended::tip};
-  int single, met = -1;
+  int single, met = -1, passing = -1;
   bool is_ahead = false;
   {
     const Patch patch(*this);
@@ -278,22 +278,23 @@ Extended Bisection::extend(const Extension& wanted, std::vector<GlobalIndex>& pa
     single = patch.single(tip);
     const Point end = e.tip + e.length * e.direction;
     Real nearest = 0.75 * e.size;  // to the line
-    bool passes = false;
     for (GlobalIndex n = 0; n < patch.n_nodes(); ++n) {
       const Point r = patch.x(n) - wanted.tip;
       if (!patch.is_obstacle(n) || dot(r, wanted.direction) < 0.05 * wanted.length ||
           distance_to_segment(patch.x(n), wanted.tip, end) > 0.5 * wanted.length)
         continue;
-      if (!patch.is_on_other(n, single)) return {};
-      passes = true;
+      const int other = patch.single(n);
+      if (!patch.is_on_other(n, single))
+        return {.obstacle = other == single ? Extended::own_fracture : Extended::boundary};
+      passing = other;
       const Real off = std::abs(cross(wanted.direction, r));
       if (off >= nearest) continue;
       nearest = off;
-      met = patch.single(n);
+      met = other;
       e.length = norm(r);
       e.direction = (1 / e.length) * r;
     }
-    if (passes && met < 0) return {};  // another fracture passes by
+    if (passing >= 0 && met < 0) return {.met = passing, .obstacle = Extended::other_fracture};
     is_ahead = met >= 0 && patch.is_ahead(wanted.tip, wanted.direction, met);
   }
   if (!add_fitting_path(e, single, met < 0, parent)) return {};

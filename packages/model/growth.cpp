@@ -3,6 +3,7 @@
 #include "base/log.hpp"
 #include "base/over_ranks.hpp"
 #include "base/parameters.hpp"
+#include "base/text.hpp"
 #include "estimate/state_table.hpp"
 #include "mesh/facets.hpp"
 #include "model/json_keys.hpp"
@@ -19,10 +20,11 @@ namespace {
 
 using Point = std::array<Real, 2>;
 
-constexpr int max_turns = 5;
-constexpr Real largest_turn = 0.35;  // rad
-constexpr Real noise = 1.001;        // largest rise of intensity/toughness that does not count
-constexpr Real together = 0.98;      // ratio to the largest intensity/toughness, of tips that grow together
+constexpr int max_turns = 8;
+constexpr Real sliding = 2, largest_ratio = 10;  // of K_II to K_I
+constexpr Real largest_turn = 0.35;              // rad
+constexpr Real noise = 1.001;                    // largest rise of intensity/toughness that does not count
+constexpr Real together = 0.98;                  // ratio to the largest intensity/toughness, of tips that grow together
 
 Real distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
 
@@ -115,6 +117,26 @@ void Tips::begin(Model& model) {
   if (!change.is_none()) model.change_mesh(change);
 }
 
+StepTaken Tips::take(Model& model, Steps& steps, base::Log& log) {
+  for (;;) {
+    auto taken = steps.take();
+    if (!taken.report.converged || taken.report.stopped) return taken;
+    const auto change = for_step(model, taken.begin, log);
+    if (change.is_none()) {
+      taken.extensions = extensions_;
+      taken.growth = growth();
+      return taken;
+    }
+    steps.take_back();
+    apply(model, change, log);
+    const auto n = change.turns.size();
+    log.info("t = {:.6g}: the step to {:.6g} is repeated on a mesh of {} cells{}", taken.begin, taken.end,
+             model.mesh().n_global_cells,
+             n == 0 ? "" : fmt::format(", after {} of extensions", base::counted(n, "turn")));
+  }
+}
+
+/// Returns the change of the mesh with which the step from `begin` is repeated; none: the step is complete.
 mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   change_ = {};
   growing_.clear();
@@ -163,30 +185,67 @@ void Tips::warn_about(const Segment& one, base::Log& log) const {
               one.tip[0], one.tip[1], std::abs(one.angle) * 180 / M_PI);
 }
 
-/// Adds turns of the extensions that disagree with the direction of growth at their tips, by the secant method. The
-/// slope of the angle between both over the turn is -1 for straight cracks under tension, about -3 for wings of a flaw
-/// that slides, and far below under a large deviatoric load.
+namespace {
+
+/// Ratio of K_II to K_I for an angle to the direction of growth, see laws::largest_hoop. It is approximately
+/// proportional to the turn of an extension. Bounded: closed faces have no K_I.
+Real ratio_of_modes(Real angle) {
+  const Real m = std::tan(std::clamp<Real>(angle, -1.5, 1.5) / 2);
+  return std::clamp(m / std::max<Real>(1 - 2 * m * m, 0.02), -largest_ratio, largest_ratio);
+}
+
+}  // namespace
+
+/// Returns the next turn of an extension, by the secant method. If the direction of growth has changed its side, the
+/// sum of turns remains between those on both sides. An extension without K (closed faces that stick) turns back by
+/// half.
+Real Tips::next_turn(const Segment& one, bool is_measured) {
+  const auto& all = one.measured;
+  const auto& [last, ratio] = all.back();
+  if (!is_measured) return (last - one.turned) / 2;
+  Real low = -largest_ratio, high = largest_ratio;  // sums of turns
+  for (const auto& [turned, of] : all) (of > 0 ? low : high) = of > 0 ? std::max(low, turned) : std::min(high, turned);
+  Real next = last - ratio / one.slope;
+  if (const Real width = high - low; width > 0 && width < largest_ratio)
+    next = std::abs(ratio) > sliding ? (low + high) / 2 : std::clamp(next, low + width / 10, high - width / 10);
+  return std::clamp(next - one.turned, -largest_turn, largest_turn);
+}
+
+/// Adds turns of the extensions that disagree with the direction of growth at their tips. After the last turn, the
+/// extension returns to the direction with the smallest disagreement. The slope of the angle between both directions
+/// over the turn is -1 for straight cracks under tension, about -3 for wings of a flaw that slides, and about -20 under
+/// a deviatoric load that is large compared with the load that opens the crack.
 void Tips::turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log) {
+  const Real tolerance = growth.turn * M_PI / 180;
   for (std::size_t k = 0; k < segments_.size(); ++k) {
     auto& one = segments_[k];
     const auto tip = std::min_element(tips.begin(), tips.end(), [&](const Tip& a, const Tip& b) {
       return distance(a.x, one.tip) < distance(b.x, one.tip);
     });
     const bool found = tip != tips.end() && distance(tip->x, one.tip) < 1e-3 * growth.segment;
-    if (one.is_settled || !found || !(tip->ratio > 0)) {
+    const bool is_measured = found && tip->ratio > 0;
+    if (one.is_settled || !found || (!is_measured && one.measured.empty())) {
       one.is_settled = true;
       continue;
     }
-    const Real angle = angle_between(one.begin, one.tip, tip->direction);
-    one.is_settled = std::abs(angle) <= growth.turn * M_PI / 180 || one.n_turns == max_turns;
-    const Real change = angle - one.angle;
-    one.angle = angle;
-    if (one.is_settled && std::abs(angle) > growth.turn * M_PI / 180) warn_about(one, log);
+    auto& all = one.measured;
+    if (is_measured) {
+      one.angle = angle_between(one.begin, one.tip, tip->direction);
+      one.is_settled = std::abs(one.angle) <= tolerance;
+      const Real ratio = ratio_of_modes(one.angle);
+      if (!all.empty() && all.back()[0] != one.turned)
+        one.slope = std::clamp<Real>((ratio - all.back()[1]) / (one.turned - all.back()[0]), -50, -0.35);
+      all.push_back({one.turned, ratio});
+    }
+    const auto best =
+        *std::min_element(all.begin(), all.end(), [](auto& a, auto& b) { return std::abs(a[1]) < std::abs(b[1]); });
+    const bool is_last = one.n_turns >= max_turns;
+    one.is_settled = one.is_settled || one.n_turns > max_turns || (is_last && std::abs(best[0] - one.turned) < 1e-9);
+    if (one.is_settled && std::abs(one.angle) > tolerance) warn_about(one, log);
     if (one.is_settled) continue;
-    const Real slope = one.n_turns == 0 ? -2.5 : std::clamp<Real>(change / one.turned, -100, -0.7);
-    one.turned = std::clamp(-angle / slope, -largest_turn, largest_turn);
+    one.turn = is_last ? best[0] - one.turned : next_turn(one, is_measured);
     ++one.n_turns;
-    change_.turns.push_back({one.begin, one.tip, one.turned});
+    change_.turns.push_back({one.begin, one.tip, one.turn});
     turned_.push_back(k);
   }
 }
@@ -252,6 +311,7 @@ void Tips::complete(const Model& model, base::Log& log) {
   segments_.clear();
 }
 
+/// Changes the mesh at the begin of the step, and notes the results and the integrals that they add.
 void Tips::apply(Model& model, const mesh::MeshChange& change, base::Log& log) {
   const auto before = model.scene().growth ? integrals(model) : std::map<std::string, Real>();
   const auto made = model.change_mesh(change);
@@ -282,7 +342,8 @@ void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made,
     const auto& result = made[k];
     const auto met = name(result.met);
     const auto& tip = growing_[k++];
-    events_.push_back({name(tip.fracture), met, tip.x, result.how, result.is_ahead ? tip.crossing : std::nan("")});
+    events_.push_back({name(tip.fracture), result == Extended::none ? "" : met, tip.x, result.how,
+                       result.is_ahead ? tip.crossing : std::nan("")});
     const bool crosses = result == Extended::crossing;
     if (crosses) segments_.push_back({.begin = tip.x, .tip = result.begin, .is_settled = true, .before = tip});
     if (result.begin != result.end)
@@ -297,10 +358,11 @@ void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made,
                            : fmt::format("the fracture \"{}\" at ({:.6g}, {:.6g})", met, result.end[0], result.end[1]));
     if (result != Extended::none) continue;
     arrested_.push_back(one.tip);
-    log.warning(
-        "the tip at ({:.6g}, {:.6g}) ends its growth: a fracture or a boundary is nearer than half of the "
-        "\"segment\", or cells would be too flat",
-        one.tip[0], one.tip[1]);
+    const std::string near = " is nearer than half of the \"segment\"";
+    const std::string reasons[] = {"cells would be too flat", "a boundary" + near,
+                                   "another part of the fracture" + near,
+                                   fmt::format("the fracture \"{}\"", met) + near};
+    log.warning("the tip at ({:.6g}, {:.6g}) ends its growth: {}", one.tip[0], one.tip[1], reasons[result.obstacle]);
   }
   for (const std::size_t s : turned_) {
     auto& one = segments_[s];
@@ -309,7 +371,8 @@ void Tips::note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made,
       warn_about(one, log);
       continue;
     }
-    const Real c = std::cos(one.turned), s_ = std::sin(one.turned), x = one.tip[0] - one.begin[0],
+    one.turned += one.turn;
+    const Real c = std::cos(one.turn), s_ = std::sin(one.turn), x = one.tip[0] - one.begin[0],
                y = one.tip[1] - one.begin[1];
     one.tip = {one.begin[0] + c * x - s_ * y, one.begin[1] + s_ * x + c * y};
   }

@@ -23,7 +23,9 @@ struct Mesh;
 namespace sprekk::model {
 
 class Model;
+class Steps;
 struct Scene;
+struct StepTaken;
 
 /// Section Growth of a scene. The fractures that may grow have an entry of their physics, the toughness.
 struct Growth {
@@ -39,19 +41,18 @@ struct Growth {
 void check_growth(const Scene& scene, const mesh::Mesh& mesh);
 
 /// Growth of the tips of a model. A step is repeated on a changed mesh until no tip would grow. Collective.
+///
+/// Columns of a table of the physics define the growth: position x, y, intensity K_hoop, `toughness`, and direction
+/// kink_x, kink_y of growth, of each tip. First the last extensions are turned until they agree with the direction of
+/// growth at their new tips. Then all tips with K_hoop >= toughness grow by an extension, together with those of the
+/// same ratio up to 2 %. A tip with a positive `crossing` crosses the fracture that its extension meets.
 class Tips {
  public:
   /// Bisects the cells at the tips to the size of new faces, before the first step.
   void begin(Model& model);
-  /// Returns the change of the mesh with which the step from `begin` is repeated; none: the step is complete.
-  ///
-  /// Columns of a table of the physics define the growth: position x, y, intensity K_hoop, `toughness`, and direction
-  /// kink_x, kink_y of growth, of each tip. First the last extensions are turned until they agree with the direction of
-  /// growth at their new tips. Then all tips with K_hoop >= toughness grow by an extension, together with those of the
-  /// same ratio up to 2 %. A tip with a positive `crossing` crosses the fracture that its extension meets.
-  mesh::MeshChange for_step(Model& model, Real begin, base::Log& log);
-  /// Changes the mesh of a model at the begin of the step, and notes the results and the integrals that they add.
-  void apply(Model& model, const mesh::MeshChange& change, base::Log& log);
+  /// Takes the next step of the model. While fractures grow, the mesh is changed and the step repeated. The complete
+  /// step contains extensions() and growth().
+  StepTaken take(Model& model, Steps& steps, base::Log& log);
   /// Returns whether the mesh contains extensions of a step that is not complete.
   bool is_in_growth() const { return !segments_.empty(); }
   /// Extensions of the complete step: tip x, y, `length`, and in J/m `released`, `fracture_energy` and `lost_energy`.
@@ -84,16 +85,23 @@ class Tips {
   };
   struct Segment {
     Point begin, tip;
-    Real angle = 0, turned = 0;  ///< to the direction of growth when last computed; last turn, rad
+    Real angle = 0;   ///< to the direction of growth when last computed, rad
+    Real turned = 0;  ///< sum of all turns, rad
+    Real turn = 0;    ///< next one, rad
     int n_turns = 0;
     bool is_settled = false;
-    Tip before = {};                ///< tip that grew
-    std::optional<Tip> after = {};  ///< new tip; empty before the next round, and without K
+    Real slope = -1.25;                              ///< of K_II/K_I over the sum of turns, 1/rad
+    std::vector<std::array<Real, 2>> measured = {};  ///< sums of turns with K_II/K_I
+    Tip before = {};                                 ///< tip that grew
+    std::optional<Tip> after = {};                   ///< new tip; empty before the next round, and without K
   };
+  mesh::MeshChange for_step(Model& model, Real begin, base::Log& log);
+  void apply(Model& model, const mesh::MeshChange& change, base::Log& log);
   std::vector<Tip> tips_of(Model& model) const;
   void note(const mesh::Mesh& mesh, const std::vector<mesh::Extended>& made, base::Log& log);
   void turn(const Growth& growth, const std::vector<Tip>& tips, base::Log& log);
   void warn_about(const Segment& one, base::Log& log) const;
+  static Real next_turn(const Segment& one, bool is_measured);
   bool may_grow(const Point& tip) const;
   void extend(const Growth& growth, const std::vector<Tip>& tips);
   void measure(const Growth& growth, const std::vector<Tip>& tips);

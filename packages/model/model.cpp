@@ -109,6 +109,8 @@ void check_transfer(const Scene& scene, const std::vector<std::unique_ptr<assemb
 Model::Model(const Scene& scene, RCP<const Comm> comm, const ModuleFactory& more_modules)
     : more_modules_(more_modules), timers_(rcp(new base::Timers)), time_(scene.time.start) {
   auto draft = prepared(scene);
+  if (auto& value = draft.value; value.growth && !value.bisection)
+    value.bisection = std::make_shared<std::optional<mesh::Bisection>>();
   std::string unconstrained;  // rock unsupported by the scene, perhaps supported by host modules; on rank 0
   whole_mesh_ = make_whole_mesh(draft, comm, unconstrained);
   auto made = drafted(std::move(draft.value), unconstrained);
@@ -243,23 +245,31 @@ std::vector<mesh::Extended> Model::change_mesh(const mesh::MeshChange& change) {
   const auto scope = timers_->scope("refinement");
   const auto comm = whole_mesh_->comm;
   std::vector<GlobalIndex> parent;  // on rank 0
-  std::vector<std::array<Real, 7>> made(change.extensions.size() + change.turns.size());
+  std::vector<mesh::Overlap> overlaps;
+  std::vector<std::array<Real, 8>> made(change.extensions.size() + change.turns.size());
   base::collectively(*comm, [&] {
     auto& bisection = *scene_.bisection;
     if (!bisection) return;
+    const auto before = *bisection;
     parent = bisection->refine(change.cells, mesh().dim());
     std::size_t k = 0;
     for (const auto& one : change.extensions) {
       const auto e = bisection->extend(one, parent);
-      made[k++] = {Real(e.how), e.begin[0], e.begin[1], e.end[0], e.end[1], Real(e.met), Real(e.is_ahead)};
+      made[k++] = {Real(e.how), e.begin[0],  e.begin[1],       e.end[0],
+                   e.end[1],    Real(e.met), Real(e.is_ahead), Real(e.obstacle)};
     }
     for (const auto& one : change.turns) made[k++][0] = bisection->turn(one);
+    if (k > 0) overlaps = bisection->overlaps(before, parent);
   });
   if (!made.empty()) made = base::sum_over_ranks(*comm, made);
   std::vector<mesh::Extended> results;
   for (const auto& m : made)
-    results.push_back(
-        {static_cast<mesh::Extended::How>(m[0]), {m[1], m[2]}, {m[3], m[4]}, static_cast<int>(m[5]), m[6] != 0});
+    results.push_back({static_cast<mesh::Extended::How>(m[0]),
+                       {m[1], m[2]},
+                       {m[3], m[4]},
+                       static_cast<int>(m[5]),
+                       m[6] != 0,
+                       static_cast<mesh::Extended::Obstacle>(m[7])});
   for (std::size_t k = 0; k < change.extensions.size(); ++k)
     if (results[k] == mesh::Extended::none) without_room_.push_back(change.extensions[k].tip);
   auto prepared = model::prepared(scene_);
@@ -267,7 +277,7 @@ std::vector<mesh::Extended> Model::change_mesh(const mesh::MeshChange& change) {
   whole_mesh_ = make_whole_mesh(prepared, comm, unconstrained);
   auto system = make_system(drafted(std::move(prepared.value), unconstrained));
   auto x = system->initial();
-  transfer({mesh(), system->mesh(), parent}, *system_, x_, *system, x);
+  transfer({mesh(), system->mesh(), parent, overlaps}, *system_, x_, *system, x);
   mesh_changes_.push_back(change);
   replace(std::move(system), std::move(x));
   return results;

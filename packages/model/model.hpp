@@ -52,7 +52,7 @@ class Model {
   int n_changes() const { return n_changes_; }
   /// Bisects cells, given on all ranks by their numbers in the mesh with all regions, into cells with edges half as
   /// long, and adjacent cells as necessary. The state is transferred, see transfer(); it counts as a change. Throws an
-  /// Error if the scene has no Scene::bisection.
+  /// Error if the scene has neither Scene::bisection nor the section Growth.
   void refine(const std::vector<GlobalIndex>& cells) { change_mesh({cells}); }
   /// Like refine(), with extensions of fractures in 2D. New faces have their initial state. Returns the results of
   /// extensions, and Extended::tip for each turn that was made.

@@ -124,7 +124,6 @@ std::unique_ptr<Model> make_model(const RunOptions& options, const std::string& 
             "--restart");
         adaptation.prepare(scene, comm);
       }
-      if (scene.growth) scene.bisection = std::make_shared<std::optional<mesh::Bisection>>();
       auto model = std::make_unique<Model>(scene, comm);
       const Probes probes(*model);  // checks that the places exist
       if (options.strict) base::throw_errors(model->warnings());
@@ -198,25 +197,17 @@ void judge(const Model& model, Results& results, Adaptation& adaptation, base::L
   for (const auto& verdict : adaptation.verdicts()) log.info("{}", verdict.line());
 }
 
-/// Takes the next step. While its errors exceed the tolerances of Accuracy, or fractures grow, the mesh is changed and
-/// the step repeated.
+/// Takes the next step. While its errors exceed the tolerances of Accuracy, the mesh is refined and the step repeated.
 StepTaken take_step(Model& model, Steps& steps, Adaptation& adaptation, Tips& tips, base::Log& log) {
   for (;;) {
-    auto taken = steps.take();
+    auto taken = tips.take(model, steps, log);
     if (!taken.report.converged || taken.report.stopped) return taken;
-    mesh::MeshChange change{adaptation.cells_for_step(model, taken.begin)};
-    if (change.is_none()) change = tips.for_step(model, taken.begin, log);
-    if (change.is_none()) {
-      taken.extensions = tips.extensions();
-      taken.growth = tips.growth();
-      return taken;
-    }
+    const auto cells = adaptation.cells_for_step(model, taken.begin);
+    if (cells.empty()) return taken;
     steps.take_back();
-    tips.apply(model, change, log);
-    const auto n = change.turns.size();
-    log.info("t = {:.6g}: the step to {:.6g} is repeated on a mesh of {} cells{}", taken.begin, taken.end,
-             model.mesh().n_global_cells,
-             n == 0 ? "" : fmt::format(", after {} of extensions", base::counted(n, "turn")));
+    model.refine(cells);
+    log.info("t = {:.6g}: the step to {:.6g} is repeated on a mesh of {} cells", taken.begin, taken.end,
+             model.mesh().n_global_cells);
   }
 }
 

@@ -89,8 +89,7 @@ void Scene::describe(base::Section& s) {
   if (s.is_sound() && !s.documents()) check_stages(s, stages, time.start);
   s.section(accuracy, "Accuracy", "quantities of interest with tolerances, on meshes that the run refines");
   if (accuracy && s.is_sound() && !s.documents()) check_accuracy(s);
-  s.section(growth, "Growth",
-            "growth of fractures with a \"toughness\" along free paths through triangles; only fractures may store");
+  s.section(growth, "Growth", "growth of fractures with a \"toughness\" along free paths through triangles");
   if (growth && s.is_sound() && !s.documents()) check_growth(s);
   if (auto& reproducible = solver.linear_solver.reproducible; output.checkpoints && !reproducible) reproducible = true;
 }
@@ -128,15 +127,17 @@ void Scene::check_growth(base::Section& s) const {
           "must be absent");
   fail_if(accuracy.has_value(), "Accuracy: is given", "must be absent");
   fail_if(output.events.has_value(), "Output > \"events\": is given", "must be absent");
-  fail_if(!stages.empty(), "Stages: is given", "must be absent");
+  for (const auto& [name, stage] : stages)
+    fail_if(!stage.excavate.empty() || !stage.backfill.empty(), fmt::format("Stages > {}: changes the regions", name),
+            "which is not available");
   fail_if(std::none_of(fractures.begin(), fractures.end(), [](const auto& one) { return one.second.toughness; }),
           "Fractures: none has a \"toughness\"", "one is required");
   auto facets = physics::Facets::none;
   physics::for_each_physics([&](auto physics) { facets = std::max(facets, physics.needs_facets(*this)); });
-  physics::for_each_physics([&]<physics::HasRates P>(P) {
-    fail_if(facets == physics::Facets::all && P::Rates::exist(*this), "Bulk: the rock stores transported quantities",
-            "which is not available");
-  });
+  int n_stored = 0;
+  physics::for_each_physics([&]<physics::HasRates P>(P) { n_stored += P::Rates::exist(*this); });
+  fail_if(facets == physics::Facets::all && n_stored > 1, "Bulk: the rock stores several transported quantities",
+          "which is not available");
 }
 
 namespace {

@@ -11,7 +11,8 @@ namespace sprekk::model {
 namespace {
 
 /// Sections that cannot change during a run.
-constexpr std::array constant_sections = {"Mesh", "Mesh file", "Time", "Output", "Probes", "Stages", "Accuracy"};
+constexpr std::array constant_sections = {"Mesh",   "Mesh file", "Time",     "Output",
+                                          "Probes", "Stages",    "Accuracy", "Growth"};
 
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;

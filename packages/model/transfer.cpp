@@ -47,6 +47,7 @@ void transfer(const assembly::Prolongation& prolongation, assembly::System& from
       if (name == from.blocks()[b].enriches) prolongation.add_enrichment(field, values, result);
     }
   }
+  if (prolongation.has_overlaps()) from.to_conserved(x);
   const auto start = initial_histories(from);
   std::map<std::string, View<Real**>> histories;
   for (const auto& [field, values] : to.histories()) histories.emplace(field.name, values);
@@ -55,6 +56,7 @@ void transfer(const assembly::Prolongation& prolongation, assembly::System& from
     prolongation.add(field, known == start.end() ? values : difference(values, known->second),
                      histories.at(field.name));
   }
+  if (prolongation.has_overlaps()) to.from_conserved(x_to);
   auto memory = to.memory();
   const auto before = from.memory();
   memory.t = before.t;

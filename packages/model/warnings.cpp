@@ -1,11 +1,13 @@
 // Warnings about implausible scenes.
 
+#include "base/over_ranks.hpp"
 #include "model/knots.hpp"
 #include "model/model.hpp"
 #include "physics/comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace sprekk::model {
@@ -92,6 +94,27 @@ std::vector<std::string> toughness_without_growth(const Scene& scene) {
   return all;
 }
 
+/// Warns about fractures that grow and are shorter than an extension. Collective.
+std::vector<std::string> segments_longer_than_fractures(const Scene& scene, const mesh::Mesh& mesh) {
+  std::vector<std::string> all;
+  if (!scene.growth) return all;
+  std::vector<Real> lengths(mesh.single_fractures.size(), 0);
+  for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+    lengths[mesh.fracture_faces[f].single] += mesh.fracture_faces[f].area;
+  lengths = base::sum_over_ranks(*mesh.comm, lengths);
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    if (const auto& [name, set] = std::tie(mesh.single_fractures[k].name, mesh.single_fractures[k].set);
+        scene.fractures.at(mesh.fracture_names[set]).toughness && lengths[k] < scene.growth->segment) {
+      all.push_back(physics::implausible(fmt::format("{}: Sprekk > Growth > \"segment\"", scene.origin),
+                                         fmt::format("is {:.6g} m, and the fracture \"{}\" has a length of {:.6g} m",
+                                                     scene.growth->segment, name, lengths[k]),
+                                         "the first extension exceeds the crack whose load determines it",
+                                         "shorten the \"segment\""));
+      break;
+    }
+  return all;
+}
+
 }  // namespace
 
 std::vector<std::string> Model::warnings() const {
@@ -106,6 +129,7 @@ std::vector<std::string> Model::warnings() const {
   add(steps_across_knots(scene_));
   add(stages_after_the_end(scene_));
   add(toughness_without_growth(scene_));
+  add(segments_longer_than_fractures(scene_, mesh()));
   return all;
 }
 

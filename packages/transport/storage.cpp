@@ -47,9 +47,27 @@ struct StorageCell {
     return volume(e) * (room(e) + growth(e) * (x[0] - initial(e))) * fluid.density(x[0]);
   }
   KOKKOS_INLINE_FUNCTION Real stored_before(int e) const { return stored(e, {initial(e) + gained(e, 0)}); }
+  /// Returns the increase of s since the start, by default up to the start of the step.
+  KOKKOS_INLINE_FUNCTION Real increase(int e) const { return increase(e, gained(e, 0)); }
+  KOKKOS_INLINE_FUNCTION Real increase(int e, Real change) const {
+    const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * change);
+    return room(e) * fluid.density(initial(e)) * denser + growth(e) * change * fluid.density(initial(e) + change);
+  }
+  KOKKOS_INLINE_FUNCTION Real slope(int e, Real change) const {
+    const Real space = room(e) + growth(e) * change;
+    return fluid.density(initial(e) + change) * (space * fluid.compressibility + growth(e));
+  }
+  /// Returns the change of u since the start for an increase of s, by Newton's method; `change` if nothing is stored.
+  KOKKOS_INLINE_FUNCTION Real change_for(int e, Real increased, Real change) const {
+    for (int iteration = 0; iteration < 20 && slope(e, change) > 0; ++iteration) {
+      const Real step = (increased - increase(e, change)) / slope(e, change);
+      change += step;
+      if (std::abs(step) <= 1e-15 * std::abs(change)) break;
+    }
+    return change;
+  }
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[1], Real (&J)[1][1]) const {
-    const Real space = room(e) + growth(e) * (x[0] - initial(e));
-    J[0][0] = volume(e) * rate * fluid.density(x[0]) * (space * fluid.compressibility + growth(e));
+    J[0][0] = volume(e) * rate * slope(e, x[0] - initial(e));
   }
 };
 
@@ -81,6 +99,11 @@ struct StorageFace : StorageCell {
   }
   KOKKOS_INLINE_FUNCTION Real stored_before(int e) const {
     return stored(e, {initial(e) + gained(e, 0), gained(e, 1)});
+  }
+  KOKKOS_INLINE_FUNCTION Real increase(int e) const {
+    const Real full = aperture(e, 0), now = aperture(e, gained(e, 1)), change = gained(e, 0);
+    const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * change);
+    return full * fluid.density(initial(e)) * denser + (now - full) * fluid.density(initial(e) + change);
   }
   /// Within the rounding error of the widening, the derivative is that of an opening face. Otherwise, the sign of this
   /// error would select the next iterate of a face at rest, and thus one of several solutions.
@@ -138,12 +161,13 @@ class Storage final : public assembly::Module,
                       public assembly::Loads,
                       public assembly::InitialValues,
                       public assembly::Steps,
-                      public assembly::Transfer {
+                      public assembly::Transfer,
+                      public assembly::Totals {
  public:
   static constexpr int m = Op::Columns::size, n = m + changes;  // components of the history
 
   struct Of {
-    std::string name, field, scale;
+    std::string name, field, scale, amount;
     fields::Entity entity;
     Loop loop;
     std::string carried;  ///< field that changes the fluid
@@ -174,6 +198,8 @@ class Storage final : public assembly::Module,
       carried_.push_back(stored.carried);
       largest_ = std::max(largest_, std::abs(stored.initial));
     }
+    unit_ = of_.amount;
+    if (context.mesh()->dim() == 2) unit_ = of_.amount == "m^3" ? "m^2" : of_.amount + "/m";
     op_.volume = assembly::to_device(volume, "volume");
     op_.room = assembly::to_device(room, "room");
     op_.growth = assembly::to_device(growth, "growth");
@@ -204,8 +230,26 @@ class Storage final : public assembly::Module,
 
   assembly::Scales loads(Real) const override { return {{of_.scale, largest_}}; }
 
+  void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
+    if constexpr (!changes) {
+      if (of_.amount.empty()) return;
+      const auto op = at(state);
+      Real sum = 0;
+      Kokkos::parallel_reduce(
+          "stored", Kokkos::RangePolicy<Execution>(0, op.gained.extent(0)),
+          KOKKOS_LAMBDA(int e, Real& part) { part += op.volume(e) * op.increase(e); }, sum);
+      totals.push_back({{"stored", of_.name}, sum, unit_});
+    }
+  }
+
   /// Entities without a history, such as new channels, are full of fluid in the present state.
   void take_over(assembly::State& state) const override { commit(state); }
+  void to_conserved(assembly::State& state) const override {
+    convert(state, [](const auto& op, int e, Real) { return op.increase(e); });
+  }
+  void from_conserved(assembly::State& state) const override {
+    convert(state, [](const auto& op, int e, Real x) { return op.change_for(e, op.gained(e, 0), x - op.initial(e)); });
+  }
   void commit(assembly::State& state) const override {
     const auto initial = op_.initial;
     const auto gained = state.history[0];
@@ -214,6 +258,21 @@ class Storage final : public assembly::Module,
           if (e >= static_cast<int>(gained.extent(0))) return;
           for (int k = 0; k < n; ++k) gained(e, k) = k == 0 ? x[0] - initial(e) : x[k];
         });
+  }
+
+  /// Replaces the histories of cells by how(op, cell, u). A fluid that another field changes has no such cells in rock
+  /// whose nodes move.
+  template <class How>
+  void convert(assembly::State& state, const How& how) const {
+    if constexpr (m == 1 && !changes) {
+      if (of_.entity != fields::Entity::cell) return;
+      const auto op = at(state);
+      const auto saved = state.history[0];
+      assembler_->for_each(
+          op, state, KOKKOS_LAMBDA(int e, const Real(&x)[n]) {
+            if (e < static_cast<int>(saved.extent(0))) saved(e, 0) = how(op, e, x[0]);
+          });
+    }
   }
 
  private:
@@ -238,6 +297,7 @@ class Storage final : public assembly::Module,
 
   Of of_;
   Find find_;
+  std::string unit_;
   std::vector<Real> carried_;  // [entity] at the start
   Real largest_ = 0;           // largest absolute initial value on this rank
   Op op_;
@@ -246,7 +306,7 @@ class Storage final : public assembly::Module,
 
 /// Creates the module. `prefix`: prefix of the field that changes the fluid.
 template <class Op>
-std::unique_ptr<assembly::Module> module_of(std::string name, std::string field, std::string scale,
+std::unique_ptr<assembly::Module> module_of(std::string name, std::string field, std::string scale, std::string amount,
                                             fields::Entity entity, Loop loop, const std::string& prefix,
                                             const std::optional<FluidChange>& change, const laws::Fluid& fluid,
                                             Find find) {
@@ -255,6 +315,7 @@ std::unique_ptr<assembly::Module> module_of(std::string name, std::string field,
     typename Module::Of of{.name = std::move(name),
                            .field = std::move(field),
                            .scale = std::move(scale),
+                           .amount = std::move(amount),
                            .entity = entity,
                            .loop = loop,
                            .carried = change ? prefix + change->field : "",
@@ -281,8 +342,8 @@ std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters) {
     }
     return stored;
   };
-  return module_of<StorageCell>(parameters.name, parameters.field, parameters.field, fields::Entity::cell, Loop::cells,
-                                "", parameters.change, parameters.fluid, find);
+  return module_of<StorageCell>(parameters.name, parameters.field, parameters.field, parameters.amount,
+                                fields::Entity::cell, Loop::cells, "", parameters.change, parameters.fluid, find);
 }
 
 std::unique_ptr<assembly::Module> make_edge_storage(StorageParameters parameters, std::vector<EdgeCapacity> edges) {
@@ -296,8 +357,8 @@ std::unique_ptr<assembly::Module> make_edge_storage(StorageParameters parameters
     return stored;
   };
   return module_of<StorageCell>("edge storage of " + parameters.field, "face " + parameters.field, parameters.field,
-                                fields::Entity::facet, Loop::facets, "face ", parameters.change, parameters.fluid,
-                                find);
+                                parameters.amount, fields::Entity::facet, Loop::facets, "face ", parameters.change,
+                                parameters.fluid, find);
 }
 
 std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameters parameters) {
@@ -319,8 +380,9 @@ std::unique_ptr<assembly::Module> make_fracture_storage(FractureStorageParameter
     return stored;
   };
   const auto make = [&](auto op) {
-    return module_of<decltype(op)>("fracture storage", "face pressure", "pressure", fields::Entity::fracture_face,
-                                   Loop::fracture_faces, "face ", parameters.change, parameters.fluid, find);
+    return module_of<decltype(op)>("fracture storage", "face pressure", "pressure", "m^3",
+                                   fields::Entity::fracture_face, Loop::fracture_faces, "face ", parameters.change,
+                                   parameters.fluid, find);
   };
   return parameters.widens ? make(StorageFace()) : make(StorageCell());
 }

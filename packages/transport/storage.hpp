@@ -25,6 +25,7 @@ struct Capacity {
 struct StorageParameters {
   std::string name = {};                       ///< name of the module
   std::string field;                           ///< u, on cells
+  std::string amount = {};                     ///< unit of the stored amount; empty: no total
   fields::Properties<Capacity> capacity = {};  ///< of cells
   laws::Fluid fluid = {};                      ///< energy: the default, with density 1
   base::Expression initial = 0;                ///< u at the start
@@ -32,7 +33,8 @@ struct StorageParameters {
 };
 
 /// Adds V (s - s_old)/dt to the rows of u (implicit Euler), with s as defined by Capacity. Saves the change of u since
-/// the start as history. For constant density the term equals V growth (u - u_old)/dt.
+/// the start as history. For constant density the term equals V growth (u - u_old)/dt. Total, with a unit `amount`
+/// and without `change`: "stored" > name, the sum of V s minus its value at the start.
 std::unique_ptr<assembly::Module> make_storage(StorageParameters parameters);
 
 struct FractureStorageParameters {

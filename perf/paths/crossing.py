@@ -88,7 +88,7 @@ def write_scene(folder, case):
                 section("joint", *joint, entry("friction coefficient", 0.6, "double")), section("fault", *fault)),
         section("Bulk", entry("material", "rock"), entry("initial stress", f"{{{1e6 * s1}, {1e6 * s3}, {1e6 * s3}, 0}}", "Array(double)")),
         section("Fractures", section("crack", entry("material", "joint"), entry("fluid pressure", f"{-1e6 * s3} + {PRESSURE}*t"), entry("strength", f"{strength} MPa"),
-                                     entry("toughness", f"abs(x - 1) &gt; {MEETING - 0.95} ? 1e9 : {TOUGHNESS}*(1 + 0.5*(x - {HALF}))")),
+                                     entry("toughness", f"abs(x - 1) &gt; {MEETING - 0.95} ? 1e9 : {TOUGHNESS}*(1 + 0.4*(x - {HALF}))")),
                 section("fault", entry("material", "fault"))),
         section("Boundary conditions", section("far", entry("boundary", "far"), entry("displacement", "{0, 0}", "Array(double)"))),
         section("Growth", entry("segment", SEGMENT, "double")),

@@ -318,11 +318,45 @@ class Wrong(unittest.TestCase):
             model.run()
         self.assertEqual(model.time, 0)
 
-    def test_growth_is_refused(self):
-        model = sprekk.Model(sprekk.Scene(ROOT / "xml/growth/wing_cracks_2d.xml"))
-        with self.assertRaisesRegex(sprekk.Error, "Growth: a Model has one mesh.*use `./sprekk run`"):
+    def test_growth_with_own_modules_is_refused(self):
+        class Nothing(sprekk.Module):
+            name = "nothing"
+
+            def blocks(self, mesh):
+                return [sprekk.Block("cells", ["displacement"], ["displacement"], lambda x, state: {})]
+        model = sprekk.Model(sprekk.Scene(ROOT / "xml/growth/wing_cracks_2d.xml"), modules=[Nothing()])
+        with self.assertRaisesRegex(sprekk.Error, 'Growth: run.. cannot extend fractures of a Model with "modules"'):
             model.run()
         self.assertEqual(model.time, 0)
+
+
+class Growth(unittest.TestCase):
+    ENTRIES = ["Mesh.lower corner={0, -4}", "Mesh.upper corner={2, 4}", "Mesh.cells={10, 40}", "Growth.segment=0.1", "Output.vtu=false",
+               "Fractures.crack.toughness=1e6*(1 + 4*(x - 0.6))", "Time.schedule={1.4, 1.7}",
+               *(f"Boundary conditions.{side}.{entry}" for side in ("west", "east") for entry in (f"boundary={side}", "displacement={0, free}"))]
+
+    def test_run_extends_fractures_as_the_program(self):
+        """Tips, energies and directions of run() and of its files are those of the program; older fields are stale."""
+        scene = sprekk.Scene(ROOT / "xml/growth/edge_crack_2d.xml", self.ENTRIES)
+        with tempfile.TemporaryDirectory() as folder:
+            model = sprekk.Model(scene)
+            before, cells = model.field("displacement"), model.mesh.n_owned_cells
+            seen = []
+            model.run(lambda model, step: seen.append(model.fractures()["area"]["crack"]), output=f"{folder}/python")
+            with self.assertRaises(sprekk.StaleField):
+                before[0]
+            self.assertGreater(model.mesh.n_owned_cells, cells)
+            (Path(folder) / "scene.xml").write_text(scene.to_xml())
+            done = subprocess.run([PROGRAM, "run", f"{folder}/scene.xml", "--output", f"{folder}/program"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            one, other = (sprekk.Results(f"{folder}/{name}").points("growth") for name in ("python", "program"))
+            np.testing.assert_allclose(one.drop(columns="fracture"), other.drop(columns="fracture"), rtol=1e-9, atol=1e-12)
+            self.assertEqual(set(one["fracture"]), {"crack"})
+            self.assertEqual(set(one["time"]), {1.7})
+            self.assertAlmostEqual(one["length"].sum(), seen[-1] - 0.6, delta=1e-12)
+            self.assertAlmostEqual(one["x"].max(), 0.6 + one["length"].sum(), delta=0.01)
+            for x, y in zip(one["x"], one["y"]):  # final positions, after turns
+                self.assertIn(f'"crack" has grown by 0.1 m to ({x:.6g}, {y:.6g})', done.stdout)
 
 
 def opening(model):

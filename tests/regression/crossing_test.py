@@ -2,6 +2,7 @@
 """Growing fractures that meet other fractures: crossing_test.py PROGRAM ROOT MPIEXEC"""
 
 import math
+from unittest import mock
 
 from program import ProgramTest, main
 from growth_test import Growth
@@ -42,6 +43,18 @@ class Crossing(ProgramTest):
         for name in crossing.CASES:
             with self.subTest(name):
                 self.case(name)
+
+    def test_large_deviatoric_stress(self):
+        """A small kink loads an extension in shear by far more than the net pressure opens it. The path remains straight, also beyond the fracture."""
+        with mock.patch.dict(crossing.CASES, {"high": (90, -30, -5, 4, 0.6, 0, True)}):
+            scene = crossing.write_scene(self.folder / "high", "high")
+        sets = ["Output.vtu=false", "Fractures.crack.toughness=abs(x - 1) > 1.85 ? 1e9 : 1e6*(1 + 0.15*(x - 2))"]
+        errors = self.call("run", scene, "--output", "out", *(word for one in sets for word in ("--set", one)))[1]
+        step, = self.results()["steps"]
+        self.assertEqual(crossing.meeting([step])["state"], "crosses")
+        self.assertGreater(max(step["growth"]["x"]), crossing.MEETING + 3.9 * crossing.SEGMENT)
+        self.assertLess(max(map(abs, step["growth"]["y"])), 1e-3)
+        self.assertNotIn("differs by", errors)
 
     def test_ranks(self):
         """The same path across on three ranks."""

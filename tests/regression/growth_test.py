@@ -175,6 +175,49 @@ class Growth(ProgramTest):
             self.assertLess(x, a + 0.05 + 0.005)
         self.assertGreater(x, 0.79)
 
+    def test_porous_rock(self):
+        """The fluid of a well is in the pores and in the fracture, with new cells and faces, on one and on three ranks. Leak-off shortens the fracture."""
+        entries = ["Output.vtu=false", "Mesh.cells={10, 20}", "Growth.segment=0.1", "Growth.faces=2"]
+        tips_of = {}
+        for ranks, times in ((1, "{10, 20, 30, 40, 50}"), (1, "{50}"), (3, "{50}")):
+            entries[4:] = [f"Time.schedule={times}"]
+            steps = self.run_scene("growth/porous_2d.xml", *entries, ranks=ranks)["steps"]
+            for step in steps:
+                parts = step["stored"]
+                self.assertEqual(set(parts), {"fluid storage", "fracture storage", "poroelastic coupling"})
+                self.assertAlmostEqual(sum(parts.values()), 1e-6 * step["time"], delta=1e-10 * 1e-6 * step["time"])
+            self.assertGreater(parts["fluid storage"], 1e-2 * sum(parts.values()))
+            self.assertAlmostEqual(sum(one.get("added_by_growth", {}).get("fluid_volume", 0) for one in steps),
+                                   2e-6 * (steps[-1]["fractures"]["notch"]["area"] - 0.6), delta=1e-15)
+            tips_of[ranks] = self.last_tip()
+        self.assertGreater(tips_of[1][0], 0.69)
+        self.assertLess(math.dist(tips_of[1], tips_of[3]), 1e-6)
+        longer = self.run_scene("growth/porous_2d.xml", *entries, "Materials.rock.permeability={0}")["steps"][-1]
+        self.assertGreater(tips(longer)[-1][0], tips_of[1][0])
+
+    def test_stages(self):
+        """A stage lowers the toughness: the fracture grows from then on, also after a restart. Stages that change regions are refused."""
+        stage = ["Stages.weaker.time=1", "Stages.weaker.Fractures.crack.toughness=6e5*(1 + 4*(x - 0.6))"]
+        sets = ["Fractures.crack.toughness=1e7" if "toughness" in one else one for one in self.STRAIGHT if "schedule" not in one]
+        sets += ["Growth.segment=0.1", "Time.schedule={0.5, 1, 1.1, 1.2}", "Output.checkpoints.steps=1", *stage]
+        steps = self.run_scene("growth/edge_crack_2d.xml", *sets)["steps"]
+        lengths = [step["fractures"]["crack"]["area"] for step in steps]
+        self.assertAlmostEqual(max(lengths[:2]), 0.6, delta=1e-12)
+        self.assertGreater(lengths[2], 0.69)
+        words = [word for one in sets for word in ("--set", one)]
+        self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *words, "--set", "Time.schedule={0.5, 1, 1.1}")
+        self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *words, "--restart")
+        part = self.results("part")["steps"]
+        self.assertAlmostEqual(part[-1]["fractures"]["crack"]["area"], lengths[-1], delta=1e-9)
+        self.assertAlmostEqual(part[-1]["stress_intensity"]["K_I"][0], steps[-1]["stress_intensity"]["K_I"][0], delta=1e-3)
+        for entry, text in (("excavate={bulk}", "Stages > weaker: changes the regions"), ("Growth.segment=0.2", "a stage cannot change it")):
+            self.assertIn(text, self.call("check", self.scene("growth/edge_crack_2d.xml"), *words, "--set", f"Stages.weaker.{entry}", expect=1)[1])
+
+    def test_segment_longer_than_the_notch(self):
+        warnings = self.call("check", self.scene(WINGS), "--set", "Growth.segment=2.5")[1]
+        self.assertIn('"segment": is 2.5 m, and the fracture "flaw" has a length of 2 m', warnings)
+        self.assertNotIn('has a length of', self.call("check", self.scene(WINGS))[1])
+
     def test_unstable_growth(self):
         """A constant toughness at a constant load: growth ends with a warning after the given number of extensions, then at the boundary."""
         sets = [word for one in ["Output.vtu=false", "Growth.segment=0.2", "Growth.extensions per step=3", "Fractures.crack.toughness=5e5", "Time.steps=1"] for word in ("--set", one)]
@@ -185,7 +228,7 @@ class Growth(ProgramTest):
         self.assertGreater(K, 5e5)
         sets[-1] = "Time.steps=3"
         errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *sets)[1]
-        self.assertIn("ends its growth: a fracture or a boundary", errors)
+        self.assertIn("ends its growth: a boundary is nearer than half", errors)
         sets[-1:] = ["Output.checkpoints.steps=1", "--set", "Time.schedule={0.7, 1.4, 1.7, 2}"]
         self.assertIn("ends its growth", self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--set", "Time.schedule={0.7, 1.4, 1.7}")[1])
         errors = self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "part", *sets, "--restart")[1]
@@ -215,11 +258,11 @@ class Growth(ProgramTest):
         for entries, text in ((["Mesh.cell=quadrilateral"], "must be triangle"), (["Mesh.refinements=1"], "must be 0"),
                               (["Output.events.rate=1"], "must be absent"), (["Growth.faces=1"], "must be at least 2"),
                               (["Growth.segment=40"], '"segment": is 40 m, must be less than the smallest side of the mesh, 40 m'),
-                              (["Fractures.flaw.toughness=1e6*(0.5 - x)"], 'is -500000 at (1, 0, 0), must be positive')):
+                              (["Fractures.flaw.toughness=1e6*(0.5 - x)"], 'is -500000 at (1, 0, 0), must be positive'), (["Fractures.flaw.toughness=-1e6"], 'must be positive (unit: Pa*m^0.5)')):
             sets = [word for one in entries for word in ("--set", one)]
             self.assertIn(text, self.call("check", self.scene(WINGS), *sets, expect=1)[1])
         for scene, entry, text in (("growth/edge_crack_2d.xml", "plastic jump={0.1}", "plastic jump\": not available with a \"toughness"),
-                                   ("verification/penny.xml", "toughness=1e6", "toughness\": requires a mesh in 2D")):
+                                   ("verification/penny.xml", "toughness=1e6", 'has other cells, must be triangle with "Growth"')):
             errors = self.call("check", self.scene(scene), "--set", "Growth.segment=0.1", "--set", "Fractures.crack.toughness=1e6", "--set", f"Fractures.crack.{entry}", expect=1)[1]
             self.assertIn(text, errors)
         errors = self.call("check", self.scene("growth/edge_crack_2d.xml"), "--set", "Growth.segment=0.1", expect=1)[1]

@@ -36,7 +36,7 @@ class Model:
         scene = scene if isinstance(scene, Scene) else Scene(scene, comm=comm)
         self.scene = with_mesh(scene, comm) if needs_mesh(scene.entries) else scene
         self.comm = comm
-        self._made_with = {"given_pressure": given_pressure, "own_pressure": own_pressure, "modules": modules}
+        self._made_with = {"given_pressure": given_pressure, "own_pressure": own_pressure, "modules": tuple(modules)}
         fluids = [(own, float(p)) for own, p in ((False, given_pressure), (True, own_pressure)) if p is not None]
         self._handle = _sprekk.Model(self.scene._handle, comm, fluids[0] if fluids else None, tuple(modules))
         self._epoch = Epoch()
@@ -85,20 +85,28 @@ class Model:
         progress  True shows a progress bar (tqdm)
         output    folder for results.json and field files, as written by `./sprekk run`
 
+        With the section Growth, each step may change the mesh, and fields are invalid afterwards.
+
         Returns a pandas.DataFrame with a row for each step: time, dt, iterations and bisections. Raises NotConverged. A
-        scene with the section Accuracy or Growth raises an Error: it requires several meshes and `./sprekk run`."""
-        for section, purpose in (("Accuracy", "reach a target error"), ("Growth", "extend fractures")):
-            if section in self.scene.entries:
-                raise _sprekk.Error(f'{self.scene.name}: Sprekk > {section}: a Model has one mesh, so run() cannot '
-                                    f'{purpose}; use `./sprekk run`, or remove the section to run on this mesh')
+        scene with the section Accuracy raises an Error: it requires several meshes and `./sprekk run`."""
+        if "Accuracy" in self.scene.entries:
+            raise _sprekk.Error(f'{self.scene.name}: Sprekk > Accuracy: a Model has one mesh, so run() cannot reach a '
+                                'target error; use `./sprekk run`, or remove the section to run on this mesh')
+        grows = "Growth" in self.scene.entries
+        for name, value in self._made_with.items():
+            if grows and value not in (None, ()):
+                raise _sprekk.Error(f'{self.scene.name}: Sprekk > Growth: run() cannot extend fractures of a Model with '
+                                    f'"{name}", which belongs to one mesh')
         steps = _sprekk.Steps(self._handle)
+        if grows:
+            self._renew()
         results = _sprekk.Results(self._handle, os.fspath(output)) if output is not None else None
         rows = []
         with _Bar(progress and self.comm.rank == 0) as bar:
             try:
                 while steps.any():
                     taken = steps.take()
-                    if taken.stage:
+                    if taken.stage or grows:
                         self._renew()
                     if results and not taken.report.stopped:
                         results.add_step(taken, not steps.any() or not taken.report.converged)

@@ -126,6 +126,7 @@ void add_intersections(const Setting& setting, const transport::HybridDiffusionP
   if (darcy.fluid.compressibility > 0 || darcy.change)
     add_storage_in_channels(setting,
                             {.field = "pressure",
+                             .amount = "m^3",
                              .fluid = darcy.fluid,
                              .initial = setting.scene.flow->initial_pressure,
                              .change = darcy.change},
@@ -267,6 +268,7 @@ void add_rock(const Setting& setting, transport::HybridDiffusionParameters darcy
   const auto& mesh = setting.mesh;
   transport::StorageParameters storage{.name = "fluid storage",
                                        .field = "pressure",
+                                       .amount = "m^3",
                                        .capacity = capacities(setting, darcy.fluid.compressibility),
                                        .fluid = darcy.fluid,
                                        .initial = setting.scene.flow->initial_pressure,

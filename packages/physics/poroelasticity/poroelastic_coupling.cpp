@@ -2,6 +2,7 @@
 
 #include "assembly/capabilities.hpp"
 #include "assembly/geometry.hpp"
+#include "assembly/saved_amounts.hpp"
 #include "assembly/term.hpp"
 #include "assembly/volume_work.hpp"
 #include "mesh/extents.hpp"
@@ -20,7 +21,8 @@ class PoroelasticCoupling final : public assembly::Module,
                                   public assembly::Steps,
                                   public assembly::Transfer,
                                   public assembly::RowWeights,
-                                  public assembly::ArtificialStorage {
+                                  public assembly::ArtificialStorage,
+                                  public assembly::Totals {
  public:
   explicit PoroelasticCoupling(PoroelasticCouplingParameters parameters) : parameters_(std::move(parameters)) {}
 
@@ -48,14 +50,7 @@ class PoroelasticCoupling final : public assembly::Module,
   void bind(const assembly::Context& context) override;
   void residual(const assembly::State& state, const assembly::Rows& r) const override {
     for (const auto& term : rates_) term.add_residual(state, r);
-    for (int k = 0; k < 2; ++k) {
-      const auto rows = r[pressures_[k]];
-      const auto old = state.history[k];
-      const Real rate = state.rate;
-      Kokkos::parallel_for(
-          "old", Kokkos::RangePolicy<Execution>(0, rows.extent(0)),
-          KOKKOS_LAMBDA(int i) { rows(i) -= rate * old(i, 0); });
-    }
+    assembly::subtract_saved(state, pressures_, r);
   }
   void jacobian(const assembly::State& state, fields::BlockMatrix& J) const override;
   void artificial(const assembly::State& state, const assembly::Rows& rows) const override {
@@ -74,21 +69,22 @@ class PoroelasticCoupling final : public assembly::Module,
     transport::put_initial(*mesh_, parameters_.stabilisation.initial, x[pressures_[0]], x[pressures_[1]]);
   }
 
+  /// Pore volume that the deformation adds.
+  void totals(const assembly::State& state, std::vector<assembly::Total>& totals) const override {
+    const auto unit = mesh_->dim() == 2 ? "m^2" : "m^3";
+    totals.push_back({{"stored", name()}, assembly::sum_of_saved(state, pressures_), unit});
+  }
+
   /// Updates the history in the present state, also in new cells.
   void take_over(assembly::State& state) const override { commit(state); }
 
-  /// Saves the storage terms of pressure rows, multiplied by dt.
-  void commit(assembly::State& state) const override {
-    assembly::Rows volumes;
-    for (const auto& x : state.x) volumes.emplace_back("volumes", x.extent(0));
-    const auto at_rate_1 = with_rate(state, 1);
-    for (const auto& term : rates_) term.add_residual(at_rate_1, volumes);
-    for (int k = 0; k < 2; ++k) {
-      const auto saved = state.history[k];
-      const auto now = volumes[pressures_[k]];
-      Kokkos::parallel_for(
-          "keep", Kokkos::RangePolicy<Execution>(0, saved.extent(0)), KOKKOS_LAMBDA(int i) { saved(i, 0) = now(i); });
-    }
+  void commit(assembly::State& state) const override { assembly::save_amounts(state, pressures_, rates_, 0, 1); }
+  /// The stabilising terms, whose sum over cells and facets is zero, follow the pressures.
+  void to_conserved(assembly::State& state) const override {
+    assembly::save_amounts(state, pressures_, {stabilisation_}, 1, -1);
+  }
+  void from_conserved(assembly::State& state) const override {
+    assembly::save_amounts(state, pressures_, {stabilisation_}, 1, 1);
   }
 
  private:
@@ -107,7 +103,7 @@ class PoroelasticCoupling final : public assembly::Module,
 
   PoroelasticCouplingParameters parameters_;
   RCP<const mesh::Mesh> mesh_;
-  std::array<int, 2> pressures_{};     // blocks of pressure, face pressure
+  std::vector<int> pressures_{};       // blocks of pressure, face pressure
   ConstView<Real*> schur_;             // [owned cell] alpha^2 V/(lambda + 2G), m^3/Pa: Schur complement (fixed stress)
   std::vector<assembly::Term> rates_;  // proportional to the rate of the state
   assembly::Term stabilisation_;       // contained in rates_
@@ -137,10 +133,9 @@ void PoroelasticCoupling::jacobian(const assembly::State& state, fields::BlockMa
 }
 
 void PoroelasticCoupling::add_stabilisation(const assembly::Context& context) {
-  const std::vector<int> blocks(pressures_.begin(), pressures_.end());
   stabilisation_ = mesh::for_corners(mesh_->shape, [&](auto shape) {
     return assembly::Term(
-        context, Loop::cells, blocks, blocks, true,
+        context, Loop::cells, pressures_, pressures_, true,
         [op = transport::stabilising_flow<shape()>(*mesh_, parameters_.stabilisation)](const assembly::State& state) {
           auto at = op;
           at.rate = state.rate;

@@ -219,7 +219,7 @@ TEST(Parameters, values_out_of_bounds_are_refused) {
   EXPECT_CONTAINS(errors_with({"Time"}, "end", "infinite"), "is infinite, must be positive");
   EXPECT_CONTAINS(errors_with({"Time"}, "steps", 0), "is 0, must be at least 1");
   EXPECT_EQ(errors_with({"Mesh"}, "size", array<double>({1, -2})),
-            "xml/slip.xml: Sprekk > Mesh > \"size\"[1]: is -2, must be positive");
+            "xml/slip.xml: Sprekk > Mesh > \"size\"[1]: is -2, must be positive (unit: m)");
   EXPECT_EQ(errors_with({"Mesh"}, "cells", array<int>({1, 2, 3})),
             "xml/slip.xml: Sprekk > Mesh > \"cells\": has 3 elements, must have 2 elements");
   EXPECT_CONTAINS(errors_with({}, "pressure", -5), "\"pressure\": is -5, must be at least 0");

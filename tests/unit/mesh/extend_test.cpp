@@ -77,6 +77,38 @@ TEST(Extension, IsStraightInAnyDirection) {
   }
 }
 
+/// The intersections of changed cells with those before fill both, and have their centroids.
+TEST(Extension, OverlapsFillTheCellsOfBothMeshes) {
+  const auto mesh = make_box(with_crack());
+  const Bisection before(mesh);
+  Bisection bisection = before;
+  auto parent = cells_of(bisection);
+  const Real c = std::cos(0.6), s = std::sin(0.6);
+  ASSERT_EQ(bisection.extend({{5, 4}, {c, s}, 0.7, 0.25}, parent), Extended::tip);
+  ASSERT_TRUE(bisection.turn({{5, 4}, {5 + 0.7 * c, 4 + 0.7 * s}, 0.2}));
+  const auto after = bisection.mesh();
+  std::map<GlobalIndex, std::array<Real, 3>> of_old, of_new;  // area, first moments
+  for (const auto& one : bisection.overlaps(before, parent)) {
+    EXPECT_GT(one.area, 0);
+    for (auto* sums : {&of_old[one.before], &of_new[one.cell]})
+      for (int i = 0; i < 3; ++i) (*sums)[i] += one.area * (i == 0 ? 1 : one.centre[i - 1]);
+  }
+  EXPECT_GT(of_new.size(), of_old.size());
+  for (const auto& [sums, of] : {std::pair(&of_old, &mesh), std::pair(&of_new, &after)})
+    for (const auto& [cell, sum] : *sums) {
+      Vector centre{};
+      for (int k = 0; k < 3; ++k) centre = centre + (Real(1) / 3) * point(*of, of->cells[3 * cell + k]);
+      const Real area = cell_volume(*of, cell);
+      EXPECT_NEAR(sum[0], area, 1e-12 * area);
+      for (int i = 0; i < 2; ++i) EXPECT_NEAR(sum[i + 1], area * centre[i], 1e-11 * area);
+    }
+  for (GlobalIndex cell = 0; cell < after.n_cells(); ++cell) {  // all others are unchanged
+    if (of_new.count(cell)) continue;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(point(after, after.cells[3 * cell + k]), point(mesh, mesh.cells[3 * parent[cell] + k]));
+  }
+}
+
 /// The rotation of an extension leaves the rest of the fracture where it is.
 TEST(Extension, TurnsAboutItsBeginning) {
   for (const int degrees : {-14, -5, 3, 14}) {

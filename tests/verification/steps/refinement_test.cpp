@@ -240,6 +240,78 @@ TEST(Refinement, KeepsStoredMassAndEnergy) {
   }
 }
 
+/// Porous rock with a fracture that ends inside, and its growth by an extension that is turned.
+struct PorousGrowth {
+  static model::Scene scene(Real compressibility) {
+    return bisected_scene("growth/edge_crack_2d.xml",
+                          {"Mesh.cells={10, 20}", "Materials.rock.permeability={1e-15}", "Materials.rock.porosity=0.1",
+                           "Materials.rock.compressibility of pores=2e-11", "Materials.rock.Biot coefficient=0.8",
+                           "Materials.joint.residual aperture=1e-5", "Flow.viscosity=1e-3", "Flow.initial pressure=1e5",
+                           fmt::format("Flow.compressibility={}", compressibility)});
+  }
+  static mesh::MeshChange change() {
+    const Real c = std::cos(0.6), s = std::sin(0.6);
+    return {{}, {{{0.6, 0}, {c, s}, 0.3, 0.12}}, {{{0.6, 0}, {0.6 + 0.3 * c, 0.3 * s}, 0.15}}};
+  }
+};
+
+/// Nodes that move take no fluid from the rock.
+TEST(Refinement, KeepsTheFluidInRockAroundGrowingTips) {
+  auto scene = PorousGrowth::scene(1e-8);
+  auto& source = scene.fractures.at("crack").source;
+  source = base::Expression("x < 0.6 ? 1e-6*(1 + x) : 0");
+  source.compile();
+  model::Model model(scene, Tpetra::getDefaultComm());
+  for (const Real t : {5, 10}) ASSERT_TRUE(model.step_to(t).converged);
+  const auto fluid = [&] {
+    const auto all = stored(model);
+    const auto &cells = all.at("pressure"), &facets = all.at("face pressure");
+    return std::array{cells[0] + facets[0], cells[1]};
+  };
+  const auto before = fluid();
+  EXPECT_NEAR(before[0], -10e-6 * (0.6 + 0.18), 1e-12 * before[1]);  // from the present state back to the start
+  model.change_mesh(PorousGrowth::change());
+  EXPECT_NEAR(fluid()[0], before[0], 1e-12 * before[1]);
+  ASSERT_TRUE(model.step_to(15).converged);
+  EXPECT_NEAR(fluid()[0], 1.5 * before[0], 1e-10 * before[1]);
+}
+
+/// Nor do they take heat from the rock.
+TEST(Refinement, KeepsTheHeatInRockAroundGrowingTips) {
+  const std::string rock = "Materials.rock.";
+  model::Model model(
+      bisected_scene("growth/edge_crack_2d.xml",
+                     {"Mesh.cells={10, 20}", rock + "thermal conductivity={3}", rock + "thermal expansion=1e-5",
+                      rock + "volumetric heat capacity=2e6", "Heat.initial temperature=300"}),
+      Tpetra::getDefaultComm());
+  ASSERT_TRUE(model.step_to(1).converged);
+  const char* const gained = "heat storage: gained temperature";
+  set(model, gained, [&](LocalIndex c, int) { return std::sin(20 * mesh::cell_centre(model.mesh(), c)[0]); });
+  const auto before = stored(model).at("temperature");
+  model.change_mesh(PorousGrowth::change());
+  EXPECT_GT(before[1], 1e5);
+  EXPECT_NEAR(stored(model).at("temperature")[0], before[0], 1e-12 * before[1]);
+}
+
+/// Pressures that are linear in the rock remain so.
+TEST(Refinement, KeepsLinearPressuresAroundGrowingTips) {
+  model::Model model(PorousGrowth::scene(0), Tpetra::getDefaultComm());
+  const auto at = [](const Vector& x) { return 1e6 * (1 + x[0] - 2 * x[1]); };
+  const auto in_cells = [&](LocalIndex c, int) { return at(mesh::cell_centre(model.mesh(), c)); };
+  set(model, "pressure", in_cells);
+  set(model, "fluid storage: gained pressure", in_cells);
+  const auto before = model.mesh().n_global_cells;
+  model.change_mesh(PorousGrowth::change());
+  ASSERT_GT(model.mesh().n_global_cells, before);
+  for (const char* name : {"pressure", "fluid storage: gained pressure"}) {
+    const auto p = values_of(model, name);
+    Real largest = 0;
+    for (std::size_t c = 0; c < p.size(); ++c)
+      largest = std::max(largest, std::abs(p[c][0] - in_cells(static_cast<LocalIndex>(c), 0)));
+    EXPECT_LT(largest, 1e-6) << name;
+  }
+}
+
 /// Histories of new faces are those of old faces; their integrals remain, and those of tractions.
 TEST(Refinement, KeepsHistoriesOfFaces) {
   for (const bool flat : {true, false}) {
