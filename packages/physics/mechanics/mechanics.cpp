@@ -159,8 +159,9 @@ MechanicsParameters parameters_of(const Setting& setting) {
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (const auto& k = condition.foundation_stiffness; !k.empty())
       foundations[name] = {.boundary = base::index_of(mesh.boundary_names, condition.boundary),
-                           .stiffness = {k[0], k[1], k.size() > 2 ? k[2] : 0},
-                           .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1};
+                           .stiffness = {k[0], k[k.size() / 2], k.back()},
+                           .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1,
+                           .along_normal = k.size() == 1};
   if (mesh.fracture_names.empty()) return {.bulk = bulk, .foundations = foundations, .solid_modulus = modulus};
   const auto fluid = fluid_pressure(scene, mesh);
   const auto tractions = initial_tractions(mesh, bulk.initial_stress, fluid, start);
