@@ -11,6 +11,7 @@ struct Elasticity {
   Real G = 0;       ///< shear modulus
   Real lambda = 0;  ///< Lame's first parameter
 
+  Real plane_strain_modulus() const { return 4 * G * (G + lambda) / (lambda + 2 * G); }  ///< E/(1 - nu^2)
   Real youngs_modulus() const { return G * (3 * lambda + 2 * G) / (lambda + G); }
 
   /// Computes the stress [dim, dim], Pa, of the displacement gradient H_ij = du_i/dx_j:

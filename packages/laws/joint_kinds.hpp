@@ -5,6 +5,7 @@
 #include "laws/bond/constant.hpp"
 #include "laws/bond/linear_softening.hpp"
 #include "laws/bond/none.hpp"
+#include "laws/bond/sharp_front.hpp"
 #include "laws/closure/bandis.hpp"
 #include "laws/closure/barton_bandis.hpp"
 #include "laws/closure/barton_bandis_cycles.hpp"
@@ -72,7 +73,8 @@ using ClosureKinds = Kinds<
 using BondKinds = Kinds<
     NoBond,
     ConstantBond,
-    SofteningBond>;
+    SofteningBond,
+    SharpFrontBond>;
 
 /// Damage of friction and dilation by slip: Left<T> left(Contact<T>), the remaining fractions.
 using DamageKinds = Kinds<

@@ -73,6 +73,20 @@ Real normal_compliance(const Joint& law, const JointStart& start) {
   return (closure((1 + part) * traction) - closure((1 - part) * traction)) / (2 * part * traction);
 }
 
+Real least_opening(const Joint& law) {
+  constexpr Real any_compression = 1e100;  // Pa
+  const Real zero = 0;                     // all history variables
+  if (n_history(law.gap.dilation) > 0) return std::numeric_limits<Real>::lowest();
+  return law.gap.initial + law.closure(Contact<Real>{.lambda_n = -any_compression, .history = {&zero, 0}});
+}
+
+Real cohesive_zone(const Joint& law, const Elasticity& rock, Real compression, int dim) {
+  const Real weakening = if_rated<Real>(law.friction, [](const auto& one) { return one.weakening(); });
+  const Real stiffness = dim == 3 ? rock.G : rock.plane_strain_modulus() / 2;
+  if (!(compression * weakening > 0)) return std::numeric_limits<Real>::infinity();
+  return 9 * M_PI / 32 * stiffness / (compression * weakening);
+}
+
 void check_start(const JointParameters& joint, const JointStart& start, const std::array<Real, 3>& traction) {
   constexpr Real rounding = 1e-9;
   const Real shear = size_of_shear(traction), slip = std::hypot(joint.plastic_jump[0], joint.plastic_jump[1]);

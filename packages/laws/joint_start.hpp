@@ -1,6 +1,7 @@
 // Initial state of a joint under a traction, and the unloaded joint from an aperture measured under it.
 #pragma once
 
+#include "laws/elasticity.hpp"
 #include "laws/joint_parameters.hpp"
 
 #include <array>
@@ -27,6 +28,15 @@ JointStart start_of(const JointParameters& joint, const std::array<Real, 3>& tra
 
 /// Derivative of the closure in the normal traction, m/Pa, in the initial state; of open joints that at first contact.
 Real normal_compliance(const Joint& law, const JointStart& start);
+
+/// Least normal jump under any compression without slip, m. Dilation laws with history variables have no bound, because
+/// reversed slip may close the joint further than slip has opened it: lowest number.
+Real least_opening(const Joint& law);
+
+/// Length of the cohesive zone of a rupture, m, 9 pi/32 G*/(N w) (Day et al. 2005), with the decrease w of the friction
+/// coefficient per slip, the effective compression N, Pa, and G* = G in 3D, G/(1 - nu) in 2D. Infinite for friction
+/// that does not depend on the slip rate, also for slip weakening without radiation damping.
+Real cohesive_zone(const Joint& law, const Elasticity& rock, Real compression, int dim);
 
 /// Throws an Error if a joint in situ cannot have this state: tension above the strength, shear above the bound (except
 /// friction that depends on the slip rate), or a path of slip below |p_0|.

@@ -49,6 +49,8 @@ Real largest_extent(const Mesh& mesh) {
   return *std::max_element(extents.begin(), extents.end());
 }
 
+Real length_of(const Mesh& mesh, const Mesh::FractureFace& face) { return std::pow(face.area, 1.0 / (mesh.dim() - 1)); }
+
 Real typical_face_area(const Mesh& mesh) {
   const Vector size = domain_extents(mesh);
   const int dim = mesh.dim();

@@ -17,6 +17,9 @@ Real largest_extent(const Mesh& mesh);
 /// domain, n the number of cells. Collective.
 Real typical_face_area(const Mesh& mesh);
 
+/// Length of a fracture face, m; in 3D the root of its area.
+Real length_of(const Mesh& mesh, const Mesh::FractureFace& face);
+
 /// Size of the bounding box of each fracture in each direction, m. Collective.
 std::vector<Vector> fracture_extents(const Mesh& mesh);
 /// Size of the bounding box of each single fracture in each direction, m. Collective.

@@ -4,6 +4,7 @@
 #include "laws/bond/none.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace sprekk::laws {
 
@@ -42,12 +43,12 @@ struct SofteningBond {
                "fracture energy G_II, dissipated by slip in addition to friction until the bond is lost"}
              .may_be_absent()}};
   }
-  static std::vector<Quantity<SofteningBond>> quantities() {
-    return {{"damage of bond", "-", "the part of its strengths that opening and slip have used up", damage},
-            {"broken fraction", "-", "the damage of the bond", damage, "", "area broken"},
-            {"energy of damage", "J/m^2", "G_I times the damage of the bond, dissipated by opening without slip",
-             [](const SofteningBond& law, const Contact<Real>& at) { return law.energy * damage(law, at); }, "",
-             "fracture energy"}};
+  static std::vector<Quantity<SofteningBond>> quantities() { return quantities_of_softening<SofteningBond>(); }
+
+  /// Estimate 0.8 E' G_I/T^2 of the length of the process zone behind a front in opening, m (Hillerborg et al. 1976;
+  /// factor of linear softening), for the modulus E' = E/(1 - nu^2), Pa; infinite without tensile strength.
+  Real process_zone(Real modulus) const {
+    return tensile > 0 ? 0.8 * modulus * energy / (tensile * tensile) : std::numeric_limits<Real>::infinity();
   }
 
   template <class T>
@@ -68,12 +69,23 @@ struct SofteningBond {
     history[1] += at.slip_of_step;
   }
 
+ protected:
+  template <class K>
+  static std::vector<Quantity<K>> quantities_of_softening() {
+    return {
+        {"damage of bond", "-", "the part of its strengths that opening and slip have used up", damage<K>},
+        {"broken fraction", "-", "the damage of the bond", damage<K>, "", "area broken"},
+        {"energy of damage", "J/m^2", "G_I times the damage of the bond, dissipated by opening without slip",
+         [](const K& law, const Contact<Real>& at) { return law.energy * damage(law, at); }, "", "fracture energy"}};
+  }
+
  private:
   static constexpr Real rounding = 1e-9;  ///< relative tolerance of tractions and separations against round-off
 
   Real used_by_opening(const Contact<Real>& at) const { return at.history[0] * use(tensile, energy); }
   Real used_by_slip(const Contact<Real>& at) const { return at.history[1] * use(shear, shear_energy); }
-  static Real damage(const SofteningBond& law, const Contact<Real>& at) {
+  template <class K>
+  static Real damage(const K& law, const Contact<Real>& at) {
     return std::min(Real(1), law.used_by_opening(at) + law.used_by_slip(at));
   }
 

@@ -118,7 +118,10 @@ void compare_conditions(Comparison& c) {
     const std::string section = "Boundary conditions > " + name;
     c.check_length(section + " > \"displacement\"", condition.displacement.size(), c.names().dim);
     c.check_length(section + " > \"traction\"", condition.traction.size(), c.names().dim);
-    c.check_length(section + " > \"foundation stiffness\"", condition.foundation_stiffness.size(), c.names().dim);
+    if (const auto n = condition.foundation_stiffness.size(); n != 1)
+      c.check_length(section + " > \"foundation stiffness\"", n, c.names().dim);
+    else if (c.scene().keeps_stress)
+      c.fail(section + " > \"foundation stiffness\"", "one value, along the normal, is not available with stages");
     c.check_length(section + " > \"lower corner\"", condition.lower_corner.size(), c.names().dim);
     c.check_length(section + " > \"upper corner\"", condition.upper_corner.size(), c.names().dim);
     const bool given = condition.Mechanics::BoundaryCondition::is_given();
@@ -167,12 +170,12 @@ void compare_in_situ_stress(Comparison& c) {
 std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c) {
   std::map<std::string, BoundaryCondition> result;
   for (const auto& [name, condition] : c.scene().boundary_conditions) {
-    const auto n = condition.displacement.size();
+    const auto n = condition.displacement.size(), n_springs = condition.foundation_stiffness.size();
     const auto fits = [&](std::size_t size) { return size == 0 || size == static_cast<std::size_t>(*c.names().dim); };
     if (c.is_sound("Boundary conditions > " + name) && has(*c.names().boundaries, condition.boundary) &&
         (!condition.region || has(*c.names().regions, *condition.region)) &&
         (!condition.fracture || has(*c.names().fractures, *condition.fracture)) && fits(n) &&
-        fits(condition.foundation_stiffness.size()) && fits(condition.lower_corner.size()) &&
+        (n_springs == 1 || fits(n_springs)) && fits(condition.lower_corner.size()) &&
         fits(condition.upper_corner.size()))
       result.emplace(name, condition);
   }
@@ -183,7 +186,8 @@ std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c)
 std::vector<assembly::DirichletCondition> with_springs(const Comparison& c,
                                                        std::map<std::string, BoundaryCondition> conditions) {
   for (auto& [name, condition] : conditions) {
-    const auto& k = condition.foundation_stiffness;
+    auto k = condition.foundation_stiffness;
+    if (k.size() == 1) k.assign(*c.names().dim, k[0]);  // along the normal
     if (std::any_of(k.begin(), k.end(), [](Real k) { return k > 0; }))
       for (const Real k_i : k)
         condition.displacement.push_back(k_i > 0 ? base::Expression(0) : base::Expression("free"));

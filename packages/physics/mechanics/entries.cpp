@@ -160,7 +160,8 @@ void Mechanics::BoundaryCondition::describe(base::Section& s) {
           "pressure on the body along the normal of its faces, a value or an expression of x, y, z, t; adds to a "
           "\"traction\"");
   s.entry(foundation_stiffness, "foundation stiffness", "Pa/m", base::at_least(0),
-          "stiffness k_i per direction of springs between the boundary and rigid ground, with the traction -k_i u_i");
+          "stiffness k_i per direction of springs between the boundary and rigid ground, with the traction -k_i u_i; "
+          "one value k: along the normal n of each face, with the traction -k n (n.u)");
 }
 
 void Mechanics::BoundaryCondition::check(base::Section& s) const {

@@ -4,7 +4,7 @@
 #include "base/names.hpp"
 #include "base/over_ranks.hpp"
 #include "laws/joint_start.hpp"
-#include "mesh/facets.hpp"
+#include "mesh/extents.hpp"
 #include "mesh/tips.hpp"
 #include "physics/mechanics/mechanics_error.hpp"
 #include "physics/mechanics/modules.hpp"
@@ -62,6 +62,7 @@ fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh:
   const auto material = [&](int group) -> const Material& {
     return own ? joint_of(scene, mesh, group) : scene.materials.at(section(group).material);
   };
+  const auto rock = elasticity(scene, mesh);
   std::vector<int> group_of;
   for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
     group_of.push_back(own ? mesh.fracture_faces[f].single : mesh.fracture_faces[f].fracture);
@@ -70,6 +71,7 @@ fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh:
       [&](int fracture) {
         const auto& jump = section(fracture).plastic_jump;
         return material(fracture).is_uniform() && !material(fracture).is_in_situ() &&
+               material(fracture).bond != laws::SharpFrontBond::name &&
                material(fracture).residual_aperture.is_constant() && !section(fracture).unbroken &&
                std::all_of(jump.begin(), jump.end(), [](const auto& value) { return value.is_constant(); });
       },
@@ -87,6 +89,7 @@ fields::Properties<laws::JointParameters> joints(const Scene& scene, const mesh:
         const auto& face = mesh.fracture_faces[f];
         if (const auto& gap = material(fracture).initial_gap; !gap.is_constant())
           joint.law.gap.initial = mean(mesh, face, gap);
+        joint.law.bond = bond_of(joint.law.bond, mesh, face, rock);
         if (section(fracture).unbroken) set_bond(joint, is_unbroken(scene, mesh, face));
         if (!joint.in_situ) return joint;
         if (const auto& path = section(fracture).slip_path) joint.slip_path = mean(mesh, face, *path);
@@ -159,8 +162,9 @@ MechanicsParameters parameters_of(const Setting& setting) {
   for (const auto& [name, condition] : scene.boundary_conditions)
     if (const auto& k = condition.foundation_stiffness; !k.empty())
       foundations[name] = {.boundary = base::index_of(mesh.boundary_names, condition.boundary),
-                           .stiffness = {k[0], k[1], k.size() > 2 ? k[2] : 0},
-                           .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1};
+                           .stiffness = {k[0], k[k.size() / 2], k.back()},
+                           .region = condition.region ? base::index_of(mesh.region_names, *condition.region) : -1,
+                           .along_normal = k.size() == 1};
   if (mesh.fracture_names.empty()) return {.bulk = bulk, .foundations = foundations, .solid_modulus = modulus};
   const auto fluid = fluid_pressure(scene, mesh);
   const auto tractions = initial_tractions(mesh, bulk.initial_stress, fluid, start);
@@ -198,15 +202,6 @@ bool has_tips(const mesh::Mesh& mesh) {
   if (base::any_rank(*mesh.comm, [&] { return !mesh.tied_to.empty(); })) return false;
   const auto tips = mesh::tip_nodes(mesh);
   return base::any_rank(*mesh.comm, [&] { return has(tips); });
-}
-
-/// Least normal jump under any compression, m. Dilation laws with history variables have no bound, because reversed
-/// slip may close the joint further than slip has opened it.
-Real least_opening(const laws::Joint& law) {
-  constexpr Real any_compression = 1e100;  // Pa
-  const Real zero = 0;                     // all history variables
-  if (laws::n_history(law.gap.dilation) > 0) return std::numeric_limits<Real>::lowest();
-  return law.gap.initial + law.closure(laws::Contact<Real>{.lambda_n = -any_compression, .history = {&zero, 0}});
 }
 
 }  // namespace
@@ -302,25 +297,6 @@ InitialStress initial_stress(const Scene& scene, const mesh::Mesh& mesh) {
   return stress;
 }
 
-namespace {
-
-/// Length of the cohesive zone, see StartOfFace. `compression`: effective, Pa.
-Real cohesive_zone(const laws::Joint& law, const laws::Elasticity& rock, Real compression, int dim) {
-  const Real weakening = laws::if_rated<Real>(law.friction, [](const auto& one) { return one.weakening(); });
-  const Real stiffness = dim == 3 ? rock.G : 2 * rock.G * (rock.lambda + rock.G) / (rock.lambda + 2 * rock.G);
-  if (!(compression * weakening > 0)) return std::numeric_limits<Real>::infinity();
-  return 9 * M_PI / 32 * stiffness / (compression * weakening);
-}
-
-Real local_compliance(const mesh::Mesh& mesh, LocalIndex f, const laws::Elasticity& rock, Real of_joint) {
-  const auto& [G, lambda] = rock;
-  const Real size = std::pow(mesh.fracture_faces[f].area, 1.0 / (mesh.dim() - 1)),
-             of_rock = G * (lambda + G) / ((lambda + 2 * G) * size);
-  return of_joint / (1 + of_joint * of_rock);
-}
-
-}  // namespace
-
 std::vector<StartOfFace> starts_of_faces(const Setting& setting) {
   std::vector<StartOfFace> starts;
   const auto& mesh = setting.mesh;
@@ -332,17 +308,19 @@ std::vector<StartOfFace> starts_of_faces(const Setting& setting) {
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
       const auto& joint = parameters.joints.of_face(mesh, f);
       const auto start = laws::start_of(joint, tractions[f], mesh.dim());
-      const auto& of_face = rock.of_cell(mesh, mesh.fracture_faces[f].cell[mesh::minus]);
+      const auto& face = mesh.fracture_faces[f];
+      const auto& of_face = rock.of_cell(mesh, face.cell[mesh::minus]);
       starts.push_back({.traction = tractions[f],
                         .bound = start.bound,
                         .depends_on_rate = joint.law.depends_on_rate(),
                         .unloaded_aperture = joint.initial_aperture,
                         .opening = parameters.initial_stress.empty() ? 0 : start.jump[0],
-                        .least_opening = least_opening(joint.law),
+                        .least_opening = laws::least_opening(joint.law),
                         .overlap = std::numeric_limits<Real>::infinity(),
                         .smaller_aperture = 0,
-                        .cohesive_zone = cohesive_zone(joint.law, of_face, -tractions[f][0], mesh.dim()),
-                        .compliance = local_compliance(mesh, f, of_face, laws::normal_compliance(joint.law, start))});
+                        .cohesive_zone = laws::cohesive_zone(joint.law, of_face, -tractions[f][0], mesh.dim()),
+                        .compliance = 1 / (1 / laws::normal_compliance(joint.law, start) +
+                                           of_face.plane_strain_modulus() / (4 * mesh::length_of(mesh, face)))});
       if (!joint.in_situ) continue;
       starts.back().overlap = laws::overlap_compression(joint, start);
       starts.back().smaller_aperture = laws::smaller_aperture(joint, start);

@@ -180,13 +180,10 @@ struct StartOfFace {
   bool depends_on_rate;          ///< the bound is that of the initial slip rate
   Real unloaded_aperture;        ///< a0 of (15), m
   Real opening;                  ///< normal jump w_0, m; zero without initial stress
-  Real least_opening;            ///< normal jump under unlimited compression without slip, m; lowest number: no bound
+  Real least_opening;            ///< see laws::least_opening(), m
   Real overlap;                  ///< of a joint in situ: laws::overlap_compression(), Pa; otherwise infinite
   Real smaller_aperture;         ///< of a joint in situ: laws::smaller_aperture(), m; otherwise 0
-  /// Length of the cohesive zone of a rupture, m, 9 pi/32 G*/(N w) (Day et al. 2005) with the decrease w of the
-  /// friction coefficient per slip, G* = G in 3D and G/(1 - nu) in 2D; infinite for friction that does not
-  /// depend on the slip rate, also for slip weakening without radiation damping.
-  Real cohesive_zone;
+  Real cohesive_zone;            ///< of a rupture, m, see laws::cohesive_zone()
   /// Widening by a pressure that varies along the fracture, m/Pa: C = C_j/(1 + C_j E'/(4 h)), with the compliance C_j
   /// of the joint, the plane-strain modulus E' of the rock at side - and the size h of the face. E'/(4 h) is the
   /// stiffness of the rock under a pressure cos(x/h).

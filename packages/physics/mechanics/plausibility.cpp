@@ -362,7 +362,7 @@ std::vector<std::string> cohesive_zone_doubts(const Setting& setting, const Star
   const auto& mesh = setting.mesh;
   const std::size_t n = mesh.single_fractures.size();
   std::vector<Real> ratio(n, huge), edge(n, huge), zone(n, huge);  // of the least resolved face
-  const auto edge_of = [&](std::size_t f) { return std::pow(mesh.fracture_faces[f].area, 1.0 / (mesh.dim() - 1)); };
+  const auto edge_of = [&](std::size_t f) { return mesh::length_of(mesh, mesh.fracture_faces[f]); };
   for (std::size_t f = 0; f < starts.size(); ++f) {
     const auto k = mesh.fracture_faces[f].single;
     ratio[k] = std::min(ratio[k], starts[f].cohesive_zone / edge_of(f));

@@ -2,7 +2,8 @@
 
 #include "base/entry_of_place.hpp"
 #include "base/over_ranks.hpp"
-#include "laws/joint.hpp"
+#include "laws/bond/process_zone.hpp"
+#include "mesh/extents.hpp"
 #include "physics/comparison.hpp"
 
 #include <algorithm>
@@ -26,14 +27,10 @@ void set_bond(laws::JointParameters& joint, bool unbroken) {
   joint.law.gap.initial = joint.initial_aperture = joint.min_aperture = 0;
 }
 
-Real process_zone(const laws::Joint& law, const laws::Elasticity& rock) {
-  constexpr Real factor = 0.8;
-  const Real stiffness = 4 * rock.G * (rock.G + rock.lambda) / (rock.lambda + 2 * rock.G);
-  return law.bond.visit([&](const auto& bond) {
-    if constexpr (requires { bond.tensile; })
-      if (bond.tensile > 0) return factor * stiffness * bond.energy / (bond.tensile * bond.tensile);
-    return std::numeric_limits<Real>::infinity();
-  });
+laws::Bond bond_of(const laws::Bond& bond, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
+                   const fields::Properties<laws::Elasticity>& rock) {
+  const auto modulus = [&](LocalIndex cell) { return rock.of_cell(mesh, cell).plane_strain_modulus(); };
+  return laws::on_face(bond, std::min(modulus(face.cell[0]), modulus(face.cell[1])), mesh::length_of(mesh, face));
 }
 
 void compare_unbroken(Comparison& c) {
@@ -60,11 +57,13 @@ void compare_unbroken(Comparison& c) {
       c.fail(fmt::format("Materials > {} > \"{}\"", fracture.material, entry),
              what + fmt::format(", required by the \"unbroken\" part of \"{}\"", name));
     };
-    if (joint->bond != laws::SofteningBond::name)
-      fail("bond", fmt::format("is {}; must be {}", joint->bond, laws::SofteningBond::name));
-    else if (const auto& strength = joint->entry("tensile strength"); !strength || is_zero(*strength))
+    const bool is_sharp = joint->bond == laws::SharpFrontBond::name;
+    if (!is_sharp && joint->bond != laws::SofteningBond::name)
+      fail("bond",
+           fmt::format("is {}; must be {} or {}", joint->bond, laws::SharpFrontBond::name, laws::SofteningBond::name));
+    else if (const auto& strength = joint->entry("tensile strength"); !is_sharp && (!strength || is_zero(*strength)))
       fail("tensile strength", "must be above 0");
-    else if (const auto& cohesion = joint->entry("cohesion"); !cohesion || is_zero(*cohesion))
+    else if (const auto& cohesion = joint->entry("cohesion"); !is_sharp && (!cohesion || is_zero(*cohesion)))
       fail("cohesion", "must be above 0 as the only resistance of bonded faces to slip under tension");
     if (joint->is_in_situ()) fail("reference state", fmt::format("is {}; must be unloaded", joint->reference_state));
     if (!scene.flow) continue;
@@ -96,33 +95,29 @@ std::vector<std::string> process_zone_warnings(const Setting& setting) {
   if (std::none_of(scene.fractures.begin(), scene.fractures.end(),
                    [](const auto& named) { return named.second.unbroken.has_value(); }))
     return {};
-  // per fracture: largest ratio of face and zone, and the smallest zone, negative
-  std::vector<Real> ratio(mesh.fracture_names.size(), 0), zone(ratio.size(), std::numeric_limits<Real>::lowest());
+  std::vector<Real> ratio(mesh.fracture_names.size(), 0);  // per fracture: largest ratio of face and zone
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
     const auto rock = elasticity(scene, mesh);
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
       const auto& face = mesh.fracture_faces[f];
       if (!is_unbroken(scene, mesh, face)) continue;
       const auto& material = joint_of(scene, mesh, face.single);
-      const auto law = at_place(scene, material, [&] { return material.joint(face.centre).law; });
-      for (const LocalIndex cell : face.cell) {
-        const Real length = process_zone(law, rock.of_cell(mesh, cell)),
-                   size = std::pow(face.area, Real(1) / (mesh.dim() - 1));
-        ratio[face.fracture] = std::max(ratio[face.fracture], size / length);
-        zone[face.fracture] = std::max(zone[face.fracture], -length);
-      }
+      auto bond = at_place(scene, material, [&] { return material.joint(face.centre).law.bond; });
+      bond = bond_of(bond, mesh, face, rock);
+      for (const LocalIndex cell : face.cell)
+        ratio[face.fracture] = std::max(
+            ratio[face.fracture],
+            mesh::length_of(mesh, face) / laws::process_zone(bond, rock.of_cell(mesh, cell).plane_strain_modulus()));
     }
   });
   ratio = base::max_over_ranks(*mesh.comm, ratio);
-  zone = base::max_over_ranks(*mesh.comm, zone);
   std::vector<std::string> warnings;
   for (std::size_t k = 0; k < ratio.size(); ++k)
     if (ratio[k] * faces_in_zone > 1 + 1e-9)
-      warnings.push_back(
-          implausible(fmt::format("{}: Sprekk > Fractures > {} > \"unbroken\"", scene.origin, mesh.fracture_names[k]),
-                      fmt::format("a process zone of about {:.3g} m has {:.2g} faces", -zone[k], 1 / ratio[k]),
-                      "the front needs at least three",
-                      "use smaller cells, or less \"tensile strength\" with the same \"fracture energy\""));
+      warnings.push_back(implausible(
+          fmt::format("{}: Sprekk > Fractures > {} > \"unbroken\"", scene.origin, mesh.fracture_names[k]),
+          fmt::format("the process zone has about {:.2g} faces", 1 / ratio[k]), "the front needs at least three",
+          "use smaller cells, or less \"tensile strength\" with the same \"fracture energy\""));
   return warnings;
 }
 

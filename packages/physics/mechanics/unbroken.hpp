@@ -18,9 +18,9 @@ bool is_unbroken(const Scene& scene, const mesh::Mesh& mesh, const mesh::Mesh::F
 /// rigid closure and shear, no gap and no aperture. Other faces have no bond.
 void set_bond(laws::JointParameters& joint, bool unbroken);
 
-/// Returns an estimate 0.8 E' G_I/T^2 of the length of the process zone behind a front in opening, m (Hillerborg et al.
-/// 1976; factor of linear softening), with E' = E/(1 - nu^2); infinite without a bond of linear softening.
-Real process_zone(const laws::Joint& law, const laws::Elasticity& rock);
+/// Returns the bond on an owned face, with the smaller E' of its sides, see laws::on_face().
+laws::Bond bond_of(const laws::Bond& bond, const mesh::Mesh& mesh, const mesh::Mesh::FractureFace& face,
+                   const fields::Properties<laws::Elasticity>& rock);
 
 /// Reports unbroken parts that are not available with other entries.
 void compare_unbroken(Comparison& comparison);

@@ -1,4 +1,5 @@
 // Common requirements on every law of laws/joint_kinds.hpp, and the combination of laws.
+#include "laws/bond/process_zone.hpp"
 #include "laws/joint.hpp"
 #include "series_block.hpp"
 
@@ -135,6 +136,23 @@ TEST(KindsOfJoints, BondsHaveTheirDerivatives) {
     EXPECT_GE(rest.shear, 0);
     EXPECT_EQ(rest.strength, rest.tension);
   });
+}
+
+/// E' = 40 GPa, faces of 0.1 m; other bonds do not depend on faces.
+TEST(SharpFront, HasAZoneOfThreeFaces) {
+  const Bond bond = SharpFrontBond{{.energy = 100}}, sharp = on_face(bond, 40e9, 0.1);
+  const Real strength = std::sqrt(0.73 * 40e9 * 100 / 0.3);
+  EXPECT_TRUE(std::isinf(process_zone(bond, 40e9)));
+  EXPECT_NEAR(process_zone(sharp, 40e9), 0.3 * 0.8 / 0.73, 1e-12);
+  const Real zero[2] = {};
+  EXPECT_NEAR(sharp.cohesion(Contact<Real>{.history = {zero}}).strength, strength, 1e-6);
+  EXPECT_NEAR(sharp.cohesion(Contact<Real>{.history = {zero}}).shear, strength, 1e-6);  // G_II = G_I
+  EXPECT_NEAR(on_face(SharpFrontBond{{.energy = 100, .shear_energy = 400}}, 40e9, 0.1)
+                  .cohesion(Contact<Real>{.history = {zero}})
+                  .shear,
+              2 * strength, 1e-6);
+  const Bond given = SofteningBond{1e6, 2e6, 100, 1000};
+  EXPECT_EQ(on_face(given, 40e9, 0.1).cohesion(Contact<Real>{.history = {zero}}).strength, 2e6);
 }
 
 /// Derivatives for closed, narrow and wide joints; at a kink a one-sided derivative. The hydraulic aperture does not

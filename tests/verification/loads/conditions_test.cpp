@@ -86,6 +86,30 @@ TEST(ElasticFoundation, HoldsABlockWithAJoint) {
     }
 }
 
+/// Block turned by 30 degrees between springs along the normals of its lower sides and a pressure on the others.
+TEST(ElasticFoundation, ActsAlongTheNormalOfATurnedSide) {
+  constexpr Real k = 50, p = 3, E = 1000;
+  const Real c = std::cos(M_PI / 6), s = std::sin(M_PI / 6);
+  for (const int dim : {2, 3})
+    for (const auto& cells : discretisations(dim)) {
+      SCOPED_TRACE(cells.name());
+      auto scene = box_of_rock(cells, std::vector<Real>(dim, 2), std::vector<int>(dim, 2), "1000");
+      scene.mesh.rotation = 30;
+      scene.mesh.rotation_axis = {0, 0, 1};
+      for (int i = 0; i < dim; ++i) {
+        auto& springs = scene.boundary_conditions[sides(dim)[2 * i]];
+        springs.boundary = sides(dim)[2 * i];
+        springs.foundation_stiffness = {k};
+        confine(scene, sides(dim)[2 * i + 1], "3");
+      }
+      model::Model model(scene, Tpetra::getDefaultComm());
+      expect_displacement(model, 1e-11, [&](const Vector3& x, const std::string&) {
+        const Real u = -p / k - p / E * (c * x[0] + s * x[1]), v = -p / k - p / E * (c * x[1] - s * x[0]);
+        return Vector3{c * u - s * v, s * u + c * v, dim == 3 ? -p / k - p / E * x[2] : 0};
+      });
+    }
+}
+
 /// Springs that are softer under one half (a region): the block rotates until forces and moments are balanced.
 TEST(ElasticFoundation, TurnsABlockOnUnequalSprings) {
   constexpr Real k = 40, p = 3;
