@@ -200,11 +200,14 @@ void judge(const Model& model, Results& results, Adaptation& adaptation, base::L
 
 /// Takes the next step. While its errors exceed the tolerances of Accuracy, or fractures grow, the mesh is changed and
 /// the step repeated.
-StepTaken take_step(Model& model, Steps& steps, Adaptation& adaptation, Tips& tips, base::Log& log) {
+StepTaken take_step(Model& model, Steps& steps, Results& results, Adaptation& adaptation, Tips& tips, base::Log& log) {
+  const auto& accuracy = model.scene().accuracy;
+  const bool estimates = accuracy && accuracy->refines_during_run();
   for (;;) {
     auto taken = steps.take();
     if (!taken.report.converged || taken.report.stopped) return taken;
-    mesh::MeshChange change{adaptation.cells_for_step(model, taken.begin)};
+    mesh::MeshChange change;
+    if (estimates) change.cells = adaptation.cells_for_step(model, taken.begin, results.estimates());
     if (change.is_none()) change = tips.for_step(model, taken.begin, log);
     if (change.is_none()) {
       taken.extensions = tips.extensions();
@@ -232,7 +235,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
   while (steps.any()) {
     bool interrupted = false;
     const auto taken = or_finished(results, [&] {
-      auto taken = naming_file(scene.origin, [&] { return take_step(model, steps, adaptation, tips, log); });
+      auto taken = naming_file(scene.origin, [&] { return take_step(model, steps, results, adaptation, tips, log); });
       const auto& step = taken.report;
       bool last = !steps.any();
       interrupted = step.stopped || (!last && step.converged && base::any_rank(*model.mesh().comm, should_stop));
