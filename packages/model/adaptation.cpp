@@ -1,7 +1,6 @@
 #include "model/adaptation.hpp"
 
 #include "base/over_ranks.hpp"
-#include "model/error_estimates.hpp"
 #include "model/steps.hpp"
 
 #include <algorithm>
@@ -152,16 +151,14 @@ void Adaptation::record(const Model& model, const estimate::Goals& goals, Real b
   order_ = goals.any_balance() ? 1 : mesh::order(mesh.shape);
 }
 
-std::vector<GlobalIndex> Adaptation::cells_for_step(Model& model, Real begin) {
+std::vector<GlobalIndex> Adaptation::cells_for_step(Model& model, Real begin, RunEstimates& estimates) {
   const auto& accuracy = model.scene().accuracy;
   if (!accuracy || !accuracy->refines_during_run() || !why_.empty()) return {};
   const auto scope = model.timers().scope("error estimate");
-  auto estimator = make_error_estimator(model, begin);
-  estimate::Goals goals(estimator, accuracy->functionals());
   const auto outputs = model.system().outputs(model.state());
   const auto state = present_state(model, outputs);
-  const auto estimate = estimator(state);
-  goals.add(state, estimate, true);
+  const auto& estimate = estimates.of_step(state);
+  auto& goals = *estimates.goals();
   const bool repeats = !runs_.empty() && runs_.back().begin == begin;
   std::map<std::string, Real> weights;
   for (const auto& [name, quantity] : accuracy->quantities) {
@@ -197,7 +194,7 @@ void Adaptation::judge(const Model& model, const estimate::Goals& goals) {
   }
   if (during_run) {
     if (reached()) why_ = "reached";
-    if (why_.empty()) why_ = "the errors of all steps together exceed the tolerance that each step meets";
+    if (why_.empty()) why_ = "its value is zero (give the \"absolute\" error)";
     return;
   }
   const bool too_long =

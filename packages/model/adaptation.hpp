@@ -3,7 +3,7 @@
 #pragma once
 
 #include "estimate/goals.hpp"
-#include "model/model.hpp"
+#include "model/error_estimates.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -34,8 +34,8 @@ class Adaptation {
 
   /// Returns the cells to be bisected before the step from `begin` is repeated, on all ranks; empty: the errors of the
   /// step meet the tolerances, a limit is reached, or the mesh is not refined during the run. In a repeated step, the
-  /// errors include the bounds from the previous mesh. Errors of earlier steps are not included.
-  std::vector<GlobalIndex> cells_for_step(Model& model, Real begin);
+  /// errors include the bounds from the previous mesh. `estimates`: of this mesh; they receive that of the step.
+  std::vector<GlobalIndex> cells_for_step(Model& model, Real begin, RunEstimates& estimates);
 
   /// Evaluates a completed run. The spatial error of a quantity is the maximum of its estimate and of bounds from the
   /// previous mesh. One bound is proportional to the change of the value. Tolerances can be met from the second mesh

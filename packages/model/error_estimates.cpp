@@ -24,6 +24,32 @@ estimate::State present_state(const Model& model, const std::vector<assembly::Ou
   return {model.state(), model.time(), outputs};
 }
 
+RunEstimates::RunEstimates(Model& model, Real start) : estimator_(make_error_estimator(model, start)) {
+  const auto& accuracy = model.scene().accuracy;
+  if (!accuracy) return;
+  goals_.emplace(estimator_, accuracy->functionals());
+  weighs_ = !accuracy->refines_during_run();
+}
+
+const estimate::ErrorEstimate& RunEstimates::of_step(const estimate::State& state) {
+  estimated_ = estimator_(state);
+  goals_->add(state, *estimated_, true);
+  return *estimated_;
+}
+
+estimate::ErrorEstimate RunEstimates::take(const estimate::State& state, bool last, bool converged) {
+  if (estimated_) {
+    auto estimate = std::move(*estimated_);
+    estimated_.reset();
+    return estimate;
+  }
+  auto estimate = estimator_(state);
+  if (!goals_ || !converged) return estimate;
+  goals_->add(state, estimate, last);
+  if (weighs_) goals_->weigh(state, estimate, last);
+  return estimate;
+}
+
 nlohmann::json summary(const estimate::ErrorEstimator& estimator, const estimate::ErrorEstimate& estimate) {
   nlohmann::json result = nlohmann::json::object();
   for (std::size_t k = 0; k < estimate.norms.size(); ++k) {

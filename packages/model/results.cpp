@@ -63,10 +63,8 @@ Results::Results(Model& model, Scene as_read, std::string directory, const std::
   }
   if (earlier)
     for (const auto& entry : earlier->journal) ends_.push_back(entry.at("step").at("time"));
-  const auto& accuracy = model_.scene().accuracy;
-  if (model_.scene().output.error_estimate || accuracy)
-    estimator_.emplace(make_error_estimator(model_, model_.setting().start));
-  if (accuracy) goals_.emplace(*estimator_, accuracy->functionals());
+  if (model_.scene().output.error_estimate || model_.scene().accuracy)
+    estimates_.emplace(model_, model_.setting().start);
   tables_.emplace(model_);
   const auto& mesh = model_.mesh();
   json_["status"] = "running";
@@ -243,15 +241,10 @@ std::array<long long, 3> Results::add_step(const StepTaken& taken, bool last) {
   if (grown_) add_growth(step, taken.extensions);
   if (catalogue_) step["events"] = catalogue_->add(model_.mesh(), report.time, outputs);
   add_probes(step, outputs);
-  if (estimator_ && (!goals_ || model_.scene().output.error_estimate || goals_->need(last))) {
+  if (estimates_ && (model_.scene().output.error_estimate || estimates_->need(last))) {
     const auto scope = model_.timers().scope("error estimate");
-    const auto state = present_state(model_, outputs);
-    const auto estimate = (*estimator_)(state);
-    step["error_estimate"] = summary(*estimator_, estimate);
-    if (goals_ && report.converged) {
-      goals_->add(state, estimate, last);
-      goals_->weigh(state, estimate, last);
-    }
+    const auto estimate = estimates_->take(present_state(model_, outputs), last, report.converged);
+    step["error_estimate"] = summary(estimates_->estimator(), estimate);
     outputs.insert(outputs.end(), estimate.fields.begin(), estimate.fields.end());
   }
   add(step);
@@ -309,15 +302,18 @@ void Results::add_error_bounds(const json& fractures, const std::vector<OutputFi
 void Results::follow_change() {
   n_changes_ = model_.n_changes();
   probes_.update_places();
-  if (estimator_) estimator_.emplace(make_error_estimator(model_, ends_.back()));
-  const auto& accuracy = model_.scene().accuracy;
-  if (accuracy) goals_.emplace(*estimator_, accuracy->functionals());
-  if (accuracy || grown_) {
+  if (estimates_) estimates_.emplace(model_, ends_.back());
+  if (model_.scene().accuracy || grown_) {
     json_.update(mesh_summary(model_.mesh()));
     json_["blocks"] = block_summary(model_.system());
     if (fractures_) add_intersections();
   }
   tables_.emplace(model_);
+}
+
+RunEstimates& Results::estimates() {
+  if (n_changes_ != model_.n_changes()) follow_change();
+  return *estimates_;
 }
 
 /// Adds a stage to results.json.

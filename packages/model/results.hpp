@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/log.hpp"
-#include "estimate/goals.hpp"
 #include "io/vtu.hpp"
 #include "model/error_estimates.hpp"
 #include "model/event_catalogue.hpp"
@@ -65,7 +64,9 @@ class Results {
   /// Relative error bounds of quantities in the last state, by their names.
   const std::map<std::string, Real>& error_bounds() const { return error_bounds_; }
   /// Quantities of the section Accuracy in the states so far. The scene must have this section.
-  const estimate::Goals& goals() const { return *goals_; }
+  const estimate::Goals& goals() const { return *estimates_->goals(); }
+  /// Estimates on the present mesh of the model. The scene must have the section Accuracy.
+  RunEstimates& estimates();
   /// Sets the entry "accuracy" for finish().
   void add_accuracy(const nlohmann::json& summary) { json_["accuracy"] = summary; }
   /// Finishes the results with the status "completed", "interrupted" or "failed", with the reason of a failure. Throws
@@ -94,8 +95,7 @@ class Results {
 
   Model& model_;
   std::string directory_;
-  std::optional<estimate::ErrorEstimator> estimator_;
-  std::optional<estimate::Goals> goals_;
+  std::optional<RunEstimates> estimates_;
   std::optional<io::VtuSeries> bulk_, fractures_;
   Probes probes_;
   int n_changes_;  // changes of the model up to the last step

@@ -198,11 +198,13 @@ void judge(const Model& model, Results& results, Adaptation& adaptation, base::L
 }
 
 /// Takes the next step. While its errors exceed the tolerances of Accuracy, the mesh is refined and the step repeated.
-StepTaken take_step(Model& model, Steps& steps, Adaptation& adaptation, Tips& tips, base::Log& log) {
+StepTaken take_step(Model& model, Steps& steps, Results& results, Adaptation& adaptation, Tips& tips, base::Log& log) {
+  const auto& accuracy = model.scene().accuracy;
   for (;;) {
     auto taken = tips.take(model, steps, log);
     if (!taken.report.converged || taken.report.stopped) return taken;
-    const auto cells = adaptation.cells_for_step(model, taken.begin);
+    if (!accuracy || !accuracy->refines_during_run()) return taken;
+    const auto cells = adaptation.cells_for_step(model, taken.begin, results.estimates());
     if (cells.empty()) return taken;
     steps.take_back();
     model.refine(cells);
@@ -223,7 +225,7 @@ Ending take_steps(Model& model, Steps& steps, Results& results, Checkpointing& c
   while (steps.any()) {
     bool interrupted = false;
     const auto taken = or_finished(results, [&] {
-      auto taken = naming_file(scene.origin, [&] { return take_step(model, steps, adaptation, tips, log); });
+      auto taken = naming_file(scene.origin, [&] { return take_step(model, steps, results, adaptation, tips, log); });
       const auto& step = taken.report;
       bool last = !steps.any();
       interrupted = step.stopped || (!last && step.converged && base::any_rank(*model.mesh().comm, should_stop));

@@ -69,7 +69,7 @@ CondensedPair::CondensedPair(const BlockOptions& options, const std::vector<Bloc
     : Preconditioner("condensation", pair[0].name),
       first_(pair[0]),
       second_(pair[1].name),
-      n_cycles_(takes_flow_order(options, pair[0]) ? 1 : 2),
+      n_cycles_(options.type == "direct" || takes_flow_order(options, pair[0]) ? 1 : 2),
       multigrid_(make_cycle(options, {pair[0]})) {}
 
 void CondensedPair::describe(Teuchos::ParameterList& blocks) const {

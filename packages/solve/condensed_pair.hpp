@@ -10,8 +10,8 @@ namespace sprekk::solve {
 ///   y_F = S^-1 (x_F - A_FK D^-1 x_K),   y_K = D^-1 (x_K - A_KF y_F),   S approximates A_FF - A_FK D^-1 A_KF
 /// D is the diagonal of A_KK. D and A_FF include BlockProblem::schur(), the contributions of other blocks. S^-1 is two
 /// cycles of multigrid. If fractures are much more conductive than rock, one cycle is too inaccurate. Additional
-/// iterations of the whole system would cost more than a second cycle. S^-1 of an advected block is one application of
-/// its method.
+/// iterations of the whole system would cost more than a second cycle. S^-1 of an advected block, or
+/// with factors, is one application of its method.
 class CondensedPair : public Preconditioner {
  public:
   CondensedPair(const BlockOptions& options, const std::vector<Block>& pair);

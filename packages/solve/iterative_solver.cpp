@@ -55,10 +55,11 @@ class IterativeSolver : public LinearSolver {
       : options_(options.preconditioner),
         blocks_(blocks),
         reproducible_(options.reproducible.value_or(false)),
+        by_cost_(options.type == "auto"),
         should_stop_(options.should_stop),
         parameters_("iterative") {
     check_krylov(options.belos, blocks.front().map->getComm());
-    preconditioner_ = make_preconditioner(options_, blocks_);
+    preconditioner_ = make_preconditioner(options_, blocks_, by_cost_);
     long long n = 0;
     for (const auto& block : blocks) n += block.map->getGlobalNumElements();
     // A matrix as small as a coarse level: multigrid would consist of the direct solver only.
@@ -223,7 +224,8 @@ class IterativeSolver : public LinearSolver {
     } catch (const Error& error) {
       if (!has_worked_ && dynamic_cast<const RefusedList*>(&error)) throw;
       failure_ = error.what();
-      preconditioner_ = make_preconditioner(options_, blocks_);  // its state after a failure may differ among ranks
+      preconditioner_ =
+          make_preconditioner(options_, blocks_, by_cost_);  // its state after a failure may differ among ranks
       inverse_ = Teuchos::null;
       reuse_.lose();
     }
@@ -306,7 +308,7 @@ class IterativeSolver : public LinearSolver {
 
   PreconditionerOptions options_;
   std::vector<Block> blocks_;
-  bool reproducible_;
+  bool reproducible_, by_cost_;
   std::function<bool()> should_stop_;
   static constexpr int products_between_stops = 4;
   ParameterList parameters_;

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "multigrid/multigrid.hpp"
 #include "solve/condensed_pair.hpp"
+#include "solve/factor_cost.hpp"
 #include "solve/fine_level.hpp"
 #include "solve/reuse.hpp"
 #include "solve/sweep.hpp"
@@ -220,10 +221,26 @@ bool enrich_first(const std::vector<Block>& blocks) {
   });
 }
 
-std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, const std::vector<Block>& blocks) {
+/// Returns the options of a group, with the type "direct" in place of "auto" for a field on facets if factors are
+/// cheaper than multigrid.
+BlockOptions chosen_by_cost(BlockOptions options, const std::vector<Block>& blocks, bool alone) {
   const auto& first = blocks.front();
-  const auto& options = all.of(first.name);
-  if (options.type == "direct") return make_direct(blocks);
+  const bool on_facets = first.n_components == 1 && !first.interpolation.is_null() && !first.coordinates.is_null();
+  if (options.type != "auto" || options.multigrid || !on_facets) return options;
+  if (blocks.size() > 1 && !is_condensed_pair(blocks)) return options;
+  const FacetMatrix matrix{.n_unknowns = static_cast<Real>(first.map->getGlobalNumElements()),
+                           .dim = dimension(first),
+                           .alone = alone,
+                           .n_ranks = first.map->getComm()->getSize()};
+  if (factors_are_cheaper(matrix)) options.type = "direct";
+  return options;
+}
+
+std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, const std::vector<Block>& blocks,
+                                           bool by_cost, bool alone) {
+  const auto& first = blocks.front();
+  const auto options = by_cost ? chosen_by_cost(all.of(first.name), blocks, alone) : all.of(first.name);
+  if (options.type == "direct" && !is_condensed_pair(blocks)) return make_direct(blocks);
   if (options.type == "Ifpack2") return make_ifpack2(options.ifpack2, blocks);
   if (options.type == "Gauss-Seidel") return make_gauss_seidel(blocks);
   if (options.type == "ILU" && !is_condensed_pair(blocks)) return make_advected(first.name);
@@ -284,13 +301,13 @@ void WholeMatrix::update(const LinearSystem& system) {
 }
 
 std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
-                                                    const std::vector<Block>& blocks) {
+                                                    const std::vector<Block>& blocks, bool by_cost) {
   const auto groups = in_order(options.sweep, blocks, groups_of(options, blocks));
   std::vector<std::unique_ptr<Preconditioner>> parts;
   for (const auto& group : groups) {
     std::vector<Block> members;
     for (const int b : group) members.push_back(blocks[b]);
-    parts.push_back(make_group(options, members));
+    parts.push_back(make_group(options, members, by_cost, groups.size() == 1));
   }
   const bool whole = groups.size() == 1 && std::is_sorted(groups.front().begin(), groups.front().end());
   if (whole) return std::move(parts.front());
@@ -321,6 +338,7 @@ std::unique_ptr<Preconditioner> make_multigrid(const BlockOptions& options, cons
 
 std::unique_ptr<Preconditioner> make_cycle(const BlockOptions& options, const std::vector<Block>& blocks) {
   const auto& first = blocks.front();
+  if (options.type == "direct") return make_direct(blocks);
   if (options.type == "ILU") return make_advected(first.name);
   if (needs_fine_level(options, blocks)) return std::make_unique<FineLevel>(options, blocks);
   return make_multigrid(options, blocks);

@@ -58,9 +58,10 @@ class Preconditioner {
 
 /// Returns the preconditioner for all blocks: a sweep over groups, each with the method of its options. The group of a
 /// block follows from its options, or is that of the block which it enriches or into which it is condensed. Throws an
-/// Error with the entry and the allowed values.
+/// Error with the entry and the allowed values. `by_cost`: type "auto" of a group selects factors if they are cheaper,
+/// see factors_are_cheaper().
 std::unique_ptr<Preconditioner> make_preconditioner(const PreconditionerOptions& options,
-                                                    const std::vector<Block>& blocks);
+                                                    const std::vector<Block>& blocks, bool by_cost = false);
 
 /// Number of coordinates of the entities of a block.
 int dimension(const Block& block);

@@ -17,8 +17,9 @@ Scene unreachable() {
 
 /// Attempts of a step that mark cells, at most `n`.
 int n_attempts(Adaptation& adaptation, Model& model, Real begin, int n) {
+  RunEstimates estimates(model, begin);
   int k = 0;
-  while (k < n && !adaptation.cells_for_step(model, begin).empty()) ++k;
+  while (k < n && !adaptation.cells_for_step(model, begin, estimates).empty()) ++k;
   return k;
 }
 
