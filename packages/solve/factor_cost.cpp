@@ -7,7 +7,7 @@ namespace {
 
 constexpr Real n_coupled = 20;                         // applications in a Newton iteration of coupled fields
 constexpr Real n_alone = 100, n_alone_by_factors = 3;  // the same for a field without others
-constexpr Real max_bytes_per_rank = 1LL << 29;
+constexpr Real max_bytes_per_rank = 1LL << 30;
 
 // seconds on one core
 constexpr Real per_operation = 7e-11;

@@ -22,7 +22,7 @@ struct FactorCost {
 FactorCost factor_cost(const FacetMatrix& matrix);
 
 /// Returns whether factors take less time than multigrid in a Newton iteration, a set-up and typical applications, and
-/// at most half a gigabyte per rank. Ranks share factorisations with an efficiency of 1/sqrt(n_ranks); substitutions
+/// at most 1 GiB per rank. Ranks share factorisations with an efficiency of 1/sqrt(n_ranks); substitutions
 /// gain nothing.
 bool factors_are_cheaper(const FacetMatrix& matrix);
 
