@@ -144,6 +144,28 @@ TEST(LinearSolvers, AutomaticChoiceFollowsItsLimits) {
   EXPECT_EQ(many.model->newton().linear().solver().reason.substr(0, 9), "iterative");
 }
 
+/// Factors replace multigrid where their estimated cost is lower: for pressures, but not for displacements.
+TEST(LinearSolvers, AutomaticChoiceOfBlocksFollowsTheirCosts) {
+  const std::string limit = "Solver.Linear solver.direct limit 3D=100",
+                    multigrid = "Solver.Linear solver.type=iterative";
+  for (const std::string name : {"performance/flow_discs.xml", "poro/injection_3d.xml"}) {
+    SCOPED_TRACE(name);
+    const Real t = read_scene(name, {}).time.times().front();
+    const auto automatic = run(name, {limit}, t), iterative = run(name, {multigrid}, t);
+    for (const auto* r : {&automatic, &iterative}) ASSERT_TRUE(r->report.converged) << r->report.reason;
+    const auto type_of = [](const Run& r, const std::string& block) {
+      const auto& blocks = r.model->newton().linear().solver().solver->parameters().sublist("Blocks");
+      return blocks.isSublist(block) ? blocks.sublist(block).get<std::string>("type") : "";
+    };
+    EXPECT_EQ(type_of(automatic, "face pressure"), "direct");
+    EXPECT_NE(type_of(iterative, "face pressure"), "direct");
+    EXPECT_NE(type_of(automatic, "displacement"), "direct");
+    for (std::size_t block = 0; block < automatic.model->state().size(); ++block)
+      EXPECT_LT(difference_of(iterative, automatic, static_cast<int>(block)), 1e-6) << block;
+    EXPECT_LT(solve::iterations(automatic.report.linear_solves), solve::iterations(iterative.report.linear_solves));
+  }
+}
+
 /// Displacements, and pressures in rock and fractures, with all kinds of preconditioners by block names.
 TEST(LinearSolvers, BlocksArePreconditionedAsAsked) {
   const std::string name = "poro/injection_2d.xml", blocks = "Solver.Blocks.";
