@@ -5,6 +5,7 @@
 #include "mesh/facets.hpp"
 
 #include <array>
+#include <optional>
 
 namespace sprekk::contact {
 
@@ -26,10 +27,11 @@ struct Constraint {
   mesh::Vector slip{};  ///< plastic tangential jump since the last accepted state, m, global frame
 };
 
-/// Supported displacement unknown.
+/// Supported displacement unknown, or component of the displacement of a node.
 struct Support {
-  LocalIndex unknown;  ///< owned
+  LocalIndex unknown;  ///< owned; one of the node
   int component;
+  std::optional<mesh::Vector> direction = {};  ///< unit vector of the support, in place of the axis of the component
 };
 
 /// Modifications of the face laws for the convergence of Newton's method. Solutions depend on the proximal term only.

@@ -123,9 +123,14 @@ void FloatingPieces::find_ties(const fields::Layout& displacement) {
 
 void FloatingPieces::constrain(const std::vector<Support>& supports) {
   support_.assign(mesh_->n_pieces, {});
-  for (const auto& [unknown, component] : supports) {
+  for (const auto& [unknown, component, direction] : supports) {
     const int piece = piece_of_[unknown / dim()];
-    const auto row = rigid_row(frames_[piece], node(unknown / dim()), component);
+    auto row = rigid_row(frames_[piece], node(unknown / dim()), component);
+    if (direction) row = {};
+    for (int i = 0; i < dim() && direction; ++i) {
+      const auto along = rigid_row(frames_[piece], node(unknown / dim()), i);
+      for (std::size_t k = 0; k < row.size(); ++k) row[k] += (*direction)[i] * along[k];
+    }
     add_product(support_[piece], row, row);
   }
   for (const auto& tie : ties_)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <limits>
 
 namespace sprekk::mesh {
@@ -70,6 +69,18 @@ std::vector<Vector> extents_of_faces(const Mesh& mesh, std::size_t n, const Box&
 }
 
 }  // namespace
+
+std::vector<Real> parts_of_normals(const GlobalMesh& mesh, int boundary) {
+  constexpr Real rounding = 1e-9;
+  std::vector<Real> parts(mesh.dim(), 0);
+  for (const auto& face : mesh.boundary_faces) {
+    if (face.boundary != boundary) continue;
+    const auto area = area_vector(mesh, face.cell, face.local_face);
+    for (int i = 0; i < mesh.dim(); ++i)
+      if (const Real part = std::abs(area[i]) / norm(area); part > rounding) parts[i] = std::max(parts[i], part);
+  }
+  return parts;
+}
 
 std::vector<Vector> fracture_extents(const Mesh& mesh) {
   return extents_of_faces(mesh, mesh.fracture_names.size(), [](const auto& face) { return face.fracture; });

@@ -20,6 +20,10 @@ Real typical_face_area(const Mesh& mesh);
 /// Length of a fracture face, m; in 3D the root of its area.
 Real length_of(const Mesh& mesh, const Mesh::FractureFace& face);
 
+/// Parts of the normals of a boundary in each direction: the largest |n_i| of its faces, 0 within rounding.
+/// Not collective.
+std::vector<Real> parts_of_normals(const GlobalMesh& mesh, int boundary);
+
 /// Size of the bounding box of each fracture in each direction, m. Collective.
 std::vector<Vector> fracture_extents(const Mesh& mesh);
 /// Size of the bounding box of each single fracture in each direction, m. Collective.

@@ -121,7 +121,8 @@ void compare_conditions(Comparison& c) {
     if (const auto n = condition.foundation_stiffness.size(); n != 1)
       c.check_length(section + " > \"foundation stiffness\"", n, c.names().dim);
     else if (c.scene().keeps_stress)
-      c.fail(section + " > \"foundation stiffness\"", "one value, along the normal, is not available with stages");
+      c.fail(section + " > \"foundation stiffness\"",
+             "one value is not available with changes of stiffness or backfill");
     c.check_length(section + " > \"lower corner\"", condition.lower_corner.size(), c.names().dim);
     c.check_length(section + " > \"upper corner\"", condition.upper_corner.size(), c.names().dim);
     const bool given = condition.Mechanics::BoundaryCondition::is_given();
@@ -182,12 +183,13 @@ std::map<std::string, BoundaryCondition> fitting_conditions(const Comparison& c)
   return result;
 }
 
-/// Conditions on displacements that constrain the same unknowns as the given conditions and springs.
-std::vector<assembly::DirichletCondition> with_springs(const Comparison& c,
+/// Conditions on displacements that constrain the unknowns of conditions and springs, also if planes are inclined.
+std::vector<assembly::DirichletCondition> with_springs(const Comparison& c, const mesh::GlobalMesh& mesh,
                                                        std::map<std::string, BoundaryCondition> conditions) {
   for (auto& [name, condition] : conditions) {
     auto k = condition.foundation_stiffness;
-    if (k.size() == 1) k.assign(*c.names().dim, k[0]);  // along the normal
+    if (k.size() == 1 && k[0] > 0)
+      k = mesh::parts_of_normals(mesh, base::index_of(*c.names().boundaries, condition.boundary));
     if (std::any_of(k.begin(), k.end(), [](Real k) { return k > 0; }))
       for (const Real k_i : k)
         condition.displacement.push_back(k_i > 0 ? base::Expression(0) : base::Expression("free"));
@@ -276,7 +278,7 @@ void Mechanics::compare_mesh(Comparison& c, const mesh::GlobalMesh& mesh) {
                    (conditions.empty() ? c.is_absent("Boundary conditions") : c.is_sound("Boundary conditions"));
   check_boxes(c, mesh, constrained());
   check_slip_boxes(c, mesh);
-  if (is_in(c.scene()) && all) c.fail_unconstrained(assembly::unconstrained(mesh, with_springs(c, conditions)));
+  if (is_in(c.scene()) && all) c.fail_unconstrained(assembly::unconstrained(mesh, with_springs(c, mesh, conditions)));
   for (auto it = conditions.begin(); it != conditions.end();)
     it = can_be_evaluated(c, it->second) ? std::next(it) : conditions.erase(it);
   for (const auto& conflict : assembly::find_conflicts(mesh, constrained(), c.begin().value_or(0))) c.add(conflict);

@@ -94,20 +94,20 @@ View<Real***> stiffness(const mesh::Mesh& mesh, const ElasticFoundationParameter
   return K.on_device();
 }
 
-/// Components of the displacement with a spring, of local nodes; along the normal, its large components.
+/// Components of the displacement with a spring, of local nodes.
 std::vector<contact::Support> supports(const mesh::Mesh& mesh, const ElasticFoundationParameters& parameters) {
   std::set<std::pair<LocalIndex, int>> constrained;
+  std::vector<contact::Support> all;
   for_each_sprung(mesh, parameters, [&](std::size_t, const auto& face) {
-    const auto n = normal_of(mesh, face);
     for (int k = 0; k < mesh::n_face_nodes(mesh.shape); ++k) {
       const int corner = mesh::face_nodes(mesh.shape)[face.local_face][k];
       const LocalIndex node = mesh.free_node(mesh.cells[face.cell * mesh.nodes_per_cell() + corner]);
-      for (int i = 0; i < mesh.dim(); ++i)
-        if (parameters.stiffness[i] > 0 && (!parameters.along_normal || std::abs(n[i]) > 0.5))
-          constrained.emplace(node * mesh.dim() + i, i);
+      if (parameters.along_normal && parameters.stiffness[0] > 0)
+        all.push_back({node * mesh.dim(), 0, normal_of(mesh, face)});
+      for (int i = 0; i < mesh.dim() && !parameters.along_normal; ++i)
+        if (parameters.stiffness[i] > 0) constrained.emplace(node * mesh.dim() + i, i);
     }
   });
-  std::vector<contact::Support> all;
   for (const auto& [unknown, component] : constrained) all.push_back({unknown, component});
   return all;
 }

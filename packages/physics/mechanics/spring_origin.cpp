@@ -88,7 +88,7 @@ class SpringOrigin final : public assembly::Module,
     const auto u = base::to_host(state.x[displacement_]);
     const auto saved = base::to_host(before);
     const auto sprung = springs_.supporting->supports().value();
-    for (const auto& [unknown, i] : sprung)
+    for (const auto& [unknown, i, along] : sprung)
       if (const LocalIndex node = unknown / dim_; unknown < layout_->n_owned())
         result(node, i) = value(stiffness_[i], u(unknown), saved(node, i));
     return result.on_device();

@@ -135,6 +135,19 @@ TEST(Scene, RockWithoutSupportIsAMistake) {
               HasSubstr("block.xml: boundary conditions: nothing constrains the rock of \"bulk\""));
 }
 
+/// Springs along the normals of a flat side do not hold the rock in the directions of this side.
+TEST(Scene, SpringsAlongTheNormalHoldNoTangentialMotion) {
+  auto entries = block_entries();
+  const auto side = entries.sublist("Boundary conditions").sublist("held").get<std::string>("boundary");
+  entries.sublist("Boundary conditions").remove("held");
+  auto& springs = entries.sublist("Boundary conditions").sublist("springs");
+  springs.set("boundary", side);
+  springs.set("foundation stiffness", Teuchos::Array<double>(1, 1e9));
+  const auto scene = scene_of(*world(), entries, "block.xml", "");
+  EXPECT_THAT(message_of([&] { Model(scene, world()); }),
+              HasSubstr("block.xml: boundary conditions: nothing constrains"));
+}
+
 TEST(Scene, AccuracyExcludesOtherMeshesAndSteps) {
   const Entries goal = {"Mesh.cell=triangle", "Accuracy.quantities.q.quantity=stress",
                         "Accuracy.quantities.q.relative=0.1"};
