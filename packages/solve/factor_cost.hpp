@@ -14,7 +14,8 @@ struct FacetMatrix {
 };
 
 /// Factors L U in nested dissection (George 1973; Lipton, Rose and Tarjan 1979). With n unknowns they have about
-/// n log2(n) entries and n^(3/2) operations in 2D, n^(4/3) and n^2 in 3D, times constants measured with MUMPS.
+/// n log2(n) entries and n^(3/2) operations in 2D, n^(4/3) and n^2 in 3D, times constants fitted to runs of MUMPS
+/// with up to 1e5 unknowns.
 struct FactorCost {
   Real operations, entries;
 };

@@ -226,7 +226,7 @@ bool enrich_first(const std::vector<Block>& blocks) {
 BlockOptions chosen_by_cost(BlockOptions options, const std::vector<Block>& blocks, bool alone) {
   const auto& first = blocks.front();
   const bool on_facets = first.n_components == 1 && !first.interpolation.is_null() && !first.coordinates.is_null();
-  if (options.type != "auto" || options.multigrid || !on_facets) return options;
+  if (options.type != "auto" || options.multigrid || !on_facets || takes_flow_order(options, first)) return options;
   if (blocks.size() > 1 && !is_condensed_pair(blocks)) return options;
   const FacetMatrix matrix{.n_unknowns = static_cast<Real>(first.map->getGlobalNumElements()),
                            .dim = dimension(first),
@@ -240,7 +240,8 @@ std::unique_ptr<Preconditioner> make_group(const PreconditionerOptions& all, con
                                            bool by_cost, bool alone) {
   const auto& first = blocks.front();
   const auto options = by_cost ? chosen_by_cost(all.of(first.name), blocks, alone) : all.of(first.name);
-  if (options.type == "direct" && !is_condensed_pair(blocks)) return make_direct(blocks);
+  if (all.of(first.name).type == "direct" || (options.type == "direct" && !is_condensed_pair(blocks)))
+    return make_direct(blocks);
   if (options.type == "Ifpack2") return make_ifpack2(options.ifpack2, blocks);
   if (options.type == "Gauss-Seidel") return make_gauss_seidel(blocks);
   if (options.type == "ILU" && !is_condensed_pair(blocks)) return make_advected(first.name);

@@ -153,7 +153,7 @@ TEST(LinearSolvers, AutomaticChoiceOfBlocksFollowsTheirCosts) {
     const Real t = read_scene(name, {}).time.times().front();
     const auto automatic = run(name, {limit}, t), iterative = run(name, {multigrid}, t);
     for (const auto* r : {&automatic, &iterative}) ASSERT_TRUE(r->report.converged) << r->report.reason;
-    const auto type_of = [](const Run& r, const std::string& block) {
+    const auto type_of = [](const tests::Run& r, const std::string& block) {
       const auto& blocks = r.model->newton().linear().solver().solver->parameters().sublist("Blocks");
       return blocks.isSublist(block) ? blocks.sublist(block).get<std::string>("type") : "";
     };
@@ -162,7 +162,7 @@ TEST(LinearSolvers, AutomaticChoiceOfBlocksFollowsTheirCosts) {
     EXPECT_NE(type_of(automatic, "displacement"), "direct");
     for (std::size_t block = 0; block < automatic.model->state().size(); ++block)
       EXPECT_LT(difference_of(iterative, automatic, static_cast<int>(block)), 1e-6) << block;
-    EXPECT_LT(solve::iterations(automatic.report.linear_solves), solve::iterations(iterative.report.linear_solves));
+    EXPECT_LE(solve::iterations(automatic.report.linear_solves), solve::iterations(iterative.report.linear_solves));
   }
 }
 
