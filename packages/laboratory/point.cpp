@@ -176,6 +176,11 @@ void PointScene::check_material(base::Section& s, const std::string& place, cons
         fmt::format("{} > \"initial traction\": missing; it is required with the \"reference state\" {} of "
                     "the joint",
                     place, materials.at(path.material).reference_state));
+  if (materials.at(path.material).bond == laws::SharpFrontBond::name)
+    s.fail_inside(
+        fmt::format("Materials > {} > \"bond\": is \"{}\", whose strengths follow from the faces of a mesh; "
+                    "give \"linear softening\" with strengths",
+                    path.material, laws::SharpFrontBond::name));
   if (path.slip_path > 0 && !materials.at(path.material).is_in_situ())
     s.fail_inside(fmt::format("{} > \"slip path\": requires the \"reference state\" in situ of the joint", place));
   if (path.control.size() != 3) return;

@@ -5,6 +5,7 @@
 #include "laws/joint_start.hpp"
 #include "mesh/ahead.hpp"
 #include "physics/mechanics/mechanics.hpp"
+#include "physics/mechanics/unbroken.hpp"
 #include "physics/scene.hpp"
 
 #include <cmath>
@@ -36,7 +37,8 @@ Real margin_of_crossing(const Setting& setting, const mesh::FrontPoint& front, c
     const Vector contact{traction[met->face * 2], traction[met->face * 2 + 1], 0},
         far = (mesh::dot(face.frame[0], n) > 0 ? 1 : -1) * contact + Real(-1) * of_tip(face.centre, n);
     const laws::Interface at{std::acos(mesh::dot(ahead, t)), mesh::dot(n, far), mesh::dot(t, far), beyond[1]};
-    const auto joint = joint_of(scene, mesh, met->single).joint(face.centre);
+    auto joint = joint_of(scene, mesh, met->single).joint(face.centre);
+    joint.law.bond = bond_of(joint.law.bond, mesh, face, elasticity(scene, mesh));
     margin = laws::margin_of_crossing(at, beyond[0], [&](Real normal, Real shear) {
       const auto state = laws::start_of(joint, {normal, shear, 0}, 2);
       return normal > state.strength ? 0 : state.bound;

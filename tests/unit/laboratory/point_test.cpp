@@ -67,6 +67,13 @@ TEST(Point, SharesTheDisplacementWithAColumn) {
   EXPECT_NEAR(states.at(0).traction[1], 0.5, 1e-12);
 }
 
+TEST(Point, RefusesABondOfFaces) {
+  const auto message = message_of([] {
+    point({"Materials.joint.bond=sharp front", "Materials.joint.fracture energy=50"});
+  });
+  EXPECT_THAT(message, HasSubstr("Materials > joint > \"bond\": is \"sharp front\", whose strengths"));
+}
+
 TEST(Point, EndsBeforeAStepWithoutState) {
   const auto scene = point({"Point.control={traction, traction}", "Time.schedule={0.5, 0.75, 2, 3}"});
   const auto curves = drive_points(scene);
