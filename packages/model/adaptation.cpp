@@ -194,7 +194,10 @@ void Adaptation::judge(const Model& model, const estimate::Goals& goals) {
   }
   if (during_run) {
     if (reached()) why_ = "reached";
-    if (why_.empty()) why_ = "its value is zero (give the \"absolute\" error)";
+    const bool none = std::any_of(verdicts_.begin(), verdicts_.end(),
+                                  [](const auto& one) { return !one.reached && one.requested == 0; });
+    if (why_.empty())
+      why_ = none ? "its value is zero (give the \"absolute\" error)" : "no cell has an estimated error";
     return;
   }
   const bool too_long =

@@ -187,7 +187,7 @@ void Tips::warn_about(const Segment& one, base::Log& log) const {
 
 namespace {
 
-/// Ratio of K_II to K_I for an angle to the direction of growth, see laws::largest_hoop. It is approximately
+/// Ratio of -K_II to K_I for an angle to the direction of growth, see laws::largest_hoop. It is approximately
 /// proportional to the turn of an extension. Bounded: closed faces have no K_I.
 Real ratio_of_modes(Real angle) {
   const Real m = std::tan(std::clamp<Real>(angle, -1.5, 1.5) / 2);
@@ -313,10 +313,9 @@ void Tips::complete(const Model& model, base::Log& log) {
 
 /// Changes the mesh at the begin of the step, and notes the results and the integrals that they add.
 void Tips::apply(Model& model, const mesh::MeshChange& change, base::Log& log) {
-  const auto before = model.scene().growth ? integrals(model) : std::map<std::string, Real>();
+  const auto before = integrals(model);
   const auto made = model.change_mesh(change);
   note(model.mesh(), made, log);
-  if (before.empty()) return;
   for (const auto& [name, sum] : integrals(model))
     if (const Real more = sum - before.at(name); std::abs(more) > 1e-13 * std::abs(sum)) added_[name] += more;
 }

@@ -90,8 +90,8 @@ class Tips {
     Real turn = 0;    ///< next one, rad
     int n_turns = 0;
     bool is_settled = false;
-    Real slope = -1.25;                              ///< of K_II/K_I over the sum of turns, 1/rad
-    std::vector<std::array<Real, 2>> measured = {};  ///< sums of turns with K_II/K_I
+    Real slope = -1.25;                              ///< of -K_II/K_I over the sum of turns, 1/rad
+    std::vector<std::array<Real, 2>> measured = {};  ///< sums of turns with -K_II/K_I
     Tip before = {};                                 ///< tip that grew
     std::optional<Tip> after = {};                   ///< new tip; empty before the next round, and without K
   };

@@ -250,7 +250,7 @@ std::vector<mesh::Extended> Model::change_mesh(const mesh::MeshChange& change) {
   base::collectively(*comm, [&] {
     auto& bisection = *scene_.bisection;
     if (!bisection) return;
-    const auto before = *bisection;
+    const auto before = made.empty() ? std::nullopt : std::optional(*bisection);
     parent = bisection->refine(change.cells, mesh().dim());
     std::size_t k = 0;
     for (const auto& one : change.extensions) {
@@ -259,7 +259,7 @@ std::vector<mesh::Extended> Model::change_mesh(const mesh::MeshChange& change) {
                    e.end[1],    Real(e.met), Real(e.is_ahead), Real(e.obstacle)};
     }
     for (const auto& one : change.turns) made[k++][0] = bisection->turn(one);
-    if (k > 0) overlaps = bisection->overlaps(before, parent);
+    if (before) overlaps = bisection->overlaps(*before, parent);
   });
   if (!made.empty()) made = base::sum_over_ranks(*comm, made);
   std::vector<mesh::Extended> results;

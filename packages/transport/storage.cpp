@@ -105,12 +105,12 @@ struct StorageFace : StorageCell {
     const Real denser = fluid.compressibility == 0 ? 0 : std::expm1(fluid.compressibility * change);
     return full * fluid.density(initial(e)) * denser + (now - full) * fluid.density(initial(e) + change);
   }
-  /// Within the rounding error of the widening, the derivative is that of an opening face. Otherwise, the sign of this
-  /// error would select the next iterate of a face at rest, and thus one of several solutions.
+  /// Within a tolerance of the least aperture, the derivative is that of an opening face. Otherwise, the sign of the
+  /// rounding error of the widening would select the next iterate of a face at rest, and thus one of several solutions.
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[2], Real (&J)[1][2]) const {
-    constexpr Real rounding = 1e-5;  // of the residual aperture
+    constexpr Real tolerance = 1e-5;  // of the least aperture
     const Real density = volume(e) * rate * fluid.density(x[0]);
-    J[0][1] = is_wide(e, x[1] + rounding * minimum(e)) ? share(e) * density : 0;
+    J[0][1] = is_wide(e, x[1] + tolerance * minimum(e)) ? share(e) * density : 0;
     J[0][0] = density * aperture(e, x[1]) * fluid.compressibility;
   }
 };

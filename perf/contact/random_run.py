@@ -71,6 +71,6 @@ def run_one(options, k):
 
 def main(options):
     names = {k: random_scenes.draw_scene(options.seed, k).name for k in range(options.random)}
-    again = f"./sprekk perf contact --random {options.random} --seed {options.seed}"
+    again = f"./sprekk perf contact --random {options.random} --seed {options.seed}{' --all-ways' if options.all_ways else ''}"
     return drawn_runs.run_all(options, names, run_one, contact.line(contact.COLUMNS) + "  verdict",
                               [*contact.COLUMNS, *violation.PARTS, "loads", "also", "difference"], again)
