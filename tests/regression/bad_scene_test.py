@@ -419,7 +419,7 @@ class Scenes(BadInput):
                     self.scene(PUSH), "--set", "Materials.rock.shear modulus=x-0.7", any_point=True)
 
     def test_numbers_beyond_use(self):
-        self.refuse_set(['Mesh > "rotation": is 1e+308, must be between -360 and 360'], "Mesh.rotation=1e308")
+        self.refuse_set(['Mesh > "rotation": is 1e+308, must be between -360 and 360 (unit: degree)'], "Mesh.rotation=1e308")
         self.refuse_set(['rock > "shear modulus": is 1e-320, too small for a double'], "Materials.rock.shear modulus=1e-320")
         self.refuse_set(['rock > "shear modulus": is -5, must be positive'], "Materials.rock.shear modulus=0-5")
 

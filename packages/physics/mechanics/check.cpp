@@ -1,5 +1,6 @@
 // Checks of scenes with mechanics.
 #include "assembly/free_motion.hpp"
+#include "mesh/extents.hpp"
 #include "physics/comparison.hpp"
 #include "physics/mechanics/unbroken.hpp"
 
@@ -121,8 +122,7 @@ void compare_conditions(Comparison& c) {
     if (const auto n = condition.foundation_stiffness.size(); n != 1)
       c.check_length(section + " > \"foundation stiffness\"", n, c.names().dim);
     else if (c.scene().keeps_stress)
-      c.fail(section + " > \"foundation stiffness\"",
-             "one value is not available with changes of stiffness or backfill");
+      c.fail(section + " > \"foundation stiffness\"", "one value is not available if stages change stiffnesses");
     c.check_length(section + " > \"lower corner\"", condition.lower_corner.size(), c.names().dim);
     c.check_length(section + " > \"upper corner\"", condition.upper_corner.size(), c.names().dim);
     const bool given = condition.Mechanics::BoundaryCondition::is_given();
