@@ -7,6 +7,7 @@ LENGTHS = ("displacement", "jump", "opening", "slip", "widening")
 STRESSES = ("stress", "traction", "largest compression")
 LEFT_OUT = ("rank", "material", "fracture", "single fracture", "state", "has slipped", "mobilised strength", "error of damage history")
 ROUNDING, ALLOWED = 1e-14, 1e-8  # round-off relative to the level of pressure and temperature; allowed difference
+OF_APERTURE = 1e-12  # round-off of an aperture, relative to the displacement
 NEAR = 1e-9  # distance from the limit between two contact states, within which either state is accepted
 
 
@@ -26,6 +27,9 @@ class Scales:
         if self.start["pressure"]:  # stress caused by the initial pressure
             self.largest["stress"] = max(self.largest.get("stress", 0), abs(self.start["pressure"]))
         self._min_stresses(written)
+        for kind in self.largest:
+            if "aperture" in kind:
+                self.largest[kind] = max(self.largest[kind], OF_APERTURE / ALLOWED * self.largest.get("length", 0))
 
     def _min_fluxes(self, written):
         """Raises the scales of fluxes to their round-off.
