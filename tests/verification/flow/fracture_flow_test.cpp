@@ -174,7 +174,8 @@ TEST(FractureFlow, FluxesAndConductancesAtEnds) {
       EXPECT_LT(error(model, in_fracture ? "fracture pressure" : "pressure", p), 1e-7) << cell << in_fracture;
       const Real put_in = 3 * (in_fracture ? aperture : 1);
       for (const auto& total : model.system().totals(model.state()))
-        EXPECT_NEAR(total.value / put_in, total.names[1] == "west" ? 1 : -1, 1e-9) << cell << in_fracture;
+        if (total.names[0] == "inflows")
+          EXPECT_NEAR(total.value / put_in, total.names[1] == "west" ? 1 : -1, 1e-9) << cell << in_fracture;
     }
 }
 
