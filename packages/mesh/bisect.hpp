@@ -79,8 +79,8 @@ class Bisection {
   /// Rotates the nodes of an extension, and the nodes around it by a part of the angle. Returns false, without a
   /// change, if cells would become too flat. 2D.
   bool turn(const Turn& turn);
-  /// Returns the intersections of the cells with those of the mesh before, where cells were bisected or nodes have moved.
-  /// `parent` as in refine(). 3D: none.
+  /// Returns the intersections of the cells with those of the mesh before, where cells were bisected or nodes have
+  /// moved. `parent` as in refine(). 3D: none.
   std::vector<Overlap> overlaps(const Bisection& before, const std::vector<GlobalIndex>& parent) const;
 
   /// Returns the present mesh, split along its fractures. Nodes preserve their numbers; copies of split nodes follow
