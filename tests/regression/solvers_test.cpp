@@ -144,7 +144,8 @@ TEST(LinearSolvers, AutomaticChoiceFollowsItsLimits) {
   EXPECT_EQ(many.model->newton().linear().solver().reason.substr(0, 9), "iterative");
 }
 
-/// Factors replace multigrid where their estimated cost is lower: for pressures, but not for displacements.
+/// Factors replace multigrid where their estimated cost is lower: for pressures on one rank, but not for displacements.
+/// On more ranks multigrid may be cheaper.
 TEST(LinearSolvers, AutomaticChoiceOfBlocksFollowsTheirCosts) {
   const std::string limit = "Solver.Linear solver.direct limit 3D=100",
                     multigrid = "Solver.Linear solver.type=iterative";
@@ -157,7 +158,8 @@ TEST(LinearSolvers, AutomaticChoiceOfBlocksFollowsTheirCosts) {
       const auto& blocks = r.model->newton().linear().solver().solver->parameters().sublist("Blocks");
       return blocks.isSublist(block) ? blocks.sublist(block).get<std::string>("type") : "";
     };
-    EXPECT_EQ(type_of(automatic, "face pressure"), "direct");
+    const bool one_rank = Tpetra::getDefaultComm()->getSize() == 1;
+    EXPECT_TRUE(type_of(automatic, "face pressure") == "direct" || !one_rank);
     EXPECT_NE(type_of(iterative, "face pressure"), "direct");
     EXPECT_NE(type_of(automatic, "displacement"), "direct");
     for (std::size_t block = 0; block < automatic.model->state().size(); ++block)
