@@ -199,13 +199,14 @@ class Fronts {
     return (1 / (2 * nn)) * cross(pp * q - qq * p, n);
   }
 
-  /// Reduces the distance of obstacles of each valid point, then sets the radii.
+  /// Reduces the distances of obstacles of each valid point, then sets the radii.
   void find_radii() {
-    std::vector<Real> least(points_.size(), std::numeric_limits<Real>::max());
+    using Distances = std::array<Real, 3>;  // of boundary, fracture, rock
+    constexpr std::array<const char*, 3> names = {"a boundary", "another fracture", "another rock"};
+    constexpr Real far = std::numeric_limits<Real>::max();
+    std::vector<Distances> least(points_.size(), {far, far, far});
     for (std::size_t p = 0; p < points_.size(); ++p)
-      if (points_[p].radius == 0)
-        for (const Real one : {to_boundary(points_[p]), to_faces(points_[p]), to_cells(points_[p])})
-          least[p] = std::min(least[p], one);
+      if (points_[p].radius == 0) least[p] = {to_boundary(points_[p]), to_faces(points_[p]), to_cells(points_[p])};
     if (!least.empty()) least = base::min_over_ranks(*mesh_.comm, least);
     for (std::size_t p = 0; p < points_.size(); ++p) {
       auto& point = points_[p];
@@ -213,7 +214,10 @@ class Fronts {
         point.radius = 0;
         continue;
       }
-      Real radius = 0.9 * std::min(least[p], to_fronts(point));
+      least[p][1] = std::min(least[p][1], to_fronts(point));
+      const auto nearest = std::min_element(least[p].begin(), least[p].end());
+      point.nearest = names[nearest - least[p].begin()];
+      Real radius = 0.9 * *nearest;
       if (mesh_.dim() == 3) radius = std::min(radius, 10 * point.size);
       if (point.curvature != 0) radius = std::min(radius, 0.5 / std::abs(point.curvature));
       point.radius = radius < 1.2 * point.size ? 0 : radius;

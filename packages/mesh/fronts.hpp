@@ -19,6 +19,7 @@ struct FrontPoint {
   Real curvature = 0;                             ///< of the front, 1/m; positive if the crack lies inside
   Real size;                                      ///< largest distance of corners of the faces at the node, m
   Real radius = 0;                                ///< of the domain of integration, m; 0: there is none
+  const char* nearest = "";                       ///< nearest of the obstacles, see find_fronts()
   Real length = 1;                                ///< integral of the weight along the front, m; 1 in 2D
   std::vector<std::array<Vector, 2>> edges = {};  ///< of the front near the point, in 3D
   std::array<Real, 3> rock;                       ///< constants of the cell on side minus

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "estimate/state_table.hpp"
 #include "mesh/facets.hpp"
+#include "mesh/fronts.hpp"
 #include "model/json_keys.hpp"
 #include "model/model.hpp"
 #include "model/steps.hpp"
@@ -51,6 +52,14 @@ std::map<std::string, Real> integrals(Model& model) {
     if (output.summary.kind == assembly::Summary::integral && output.n_components == 1)
       add(with_underscores(output.summary.name), [&](LocalIndex f) { return output.values[f]; });
   return sums;
+}
+
+/// Obstacle within 1.3 faces of a tip without K. Collective.
+std::string obstacle(const mesh::Mesh& mesh, const Point& tip) {
+  const std::vector<char> all(mesh.fracture_names.size(), 1);
+  for (const auto& front : mesh::find_fronts(mesh, all, [](LocalIndex) { return std::array<Real, 3>{}; }))
+    if (front.radius == 0 && distance({front.x[0], front.x[1]}, tip) < 1e-9 * front.size) return front.nearest;
+  return "another rock";
 }
 
 }  // namespace
@@ -160,10 +169,8 @@ mesh::MeshChange Tips::for_step(Model& model, Real begin, base::Log& log) {
   for (const auto& tip : tips)
     if (change_.is_none() && std::isnan(tip.ratio) && may_grow(tip.x)) {
       arrested_.push_back(tip.x);
-      log.warning(
-          "t = {:.6g}: the tip at ({:.6g}, {:.6g}) cannot grow: it has no K, because another fracture, a boundary "
-          "or another rock is too near",
-          model.time(), tip.x[0], tip.x[1]);
+      log.warning("t = {:.6g}: the tip at ({:.6g}, {:.6g}) cannot grow: it has no K, because {} is too near",
+                  model.time(), tip.x[0], tip.x[1], obstacle(model.mesh(), tip.x));
     }
   if (!change_.extensions.empty() && n_rounds_++ == growth->largest) {
     const auto& tip = change_.extensions[0].tip;

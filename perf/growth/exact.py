@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 VALUES = {0.25: (0.6151778, 1.126029, 0.544950), 0.5: (0.6133710, 1.127585, 0.546018), 1: (0.5992533, 1.141554, 0.555835),
           1.5: (0.5677577, 1.181425, 0.585840), 2: (0.5239670, 1.255265, 0.647751), 3: (0.4342653, 1.481781, 0.876781),
           4: (0.3660036, 1.746118, 1.204789), 6: (0.2817473, 2.261364, 2.010820)}  # Kd: gamma, omega, pi
+CIRCLES = {0.5: (0.695668, 1.195444), 1: (0.681399, 1.213226), 2: (0.614224, 1.363649), 5: (0.447788, 2.392769)}  # Kd: gamma, omega
 VISCOUS_TIP = 2 ** (1 / 3) * 3 ** (5 / 6)  # of w = VISCOUS_TIP (mu' V/E')^(1/3) d^(2/3)
 
 
@@ -49,6 +50,33 @@ class Fracture:
         viscosity, added."""
         viscous = VISCOUS_TIP**3 * self.viscosity * self.speed / self.modulus * d**2
         return ((self.K / self.modulus) ** 3 * d**1.5 + viscous) ** (1 / 3)
+
+
+class Circle:
+    """Circular fracture that has the radius `radius` at the time `end`: radius gamma L, opening at the well omega eps L,
+    eps = (mu'/(E' t))^(1/3),  L = (E' Q^3 t^4/mu')^(1/9),  Kd = K' (t^2/(mu'^5 Q^3 E'^13))^(1/18) at the end."""
+
+    def __init__(self, toughness, modulus, energy, radius, end):
+        """Arguments as of Fracture."""
+        self.gamma, self.omega = CIRCLES[toughness]
+        self.modulus, self.end, self.radius = modulus, end, radius
+        self.K = 4 * math.sqrt(2 / math.pi) * math.sqrt(energy * modulus)
+        ratio = (radius / self.gamma) ** 9 / (modulus * end**4)                     # Q^3/mu'
+        product = end**2 * (self.K / toughness / modulus) ** 18 * modulus**5        # mu'^5 Q^3
+        self.viscosity = (product / ratio) ** (1 / 6)
+        self.rate = (ratio * self.viscosity) ** (1 / 3)
+        self.power = 9 / 4 if toughness < 2 else 5 / 2  # of t ~ R^power
+        self.speed = radius / end / self.power
+
+    def at(self, t):
+        """Radius and opening at the well, m, near the end."""
+        eps, L = (self.viscosity / (self.modulus * t)) ** (1 / 3), (self.modulus * self.rate**3 * t**4 / self.viscosity) ** (1 / 9)
+        return self.gamma * L, self.omega * eps * L
+
+    def time(self, radius):
+        return self.end * (radius / self.radius) ** self.power
+
+    tip_opening = Fracture.tip_opening
 
 
 class Leaking:

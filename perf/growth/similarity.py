@@ -40,6 +40,7 @@ def kernel(x, dx, s, ds, apart):
 class Grid:
     """Panels in s near the well and in d = 1 - s near the tip, in the order of s. Beyond the last panel, functions continue
     as powers of d."""
+    kernel = staticmethod(kernel)
 
     def __init__(self, at_well=14, at_tip=44):
         edges = [0.0, *(0.5 * 2.0**-k for k in range(at_well, -1, -1))]
@@ -73,7 +74,7 @@ class Grid:
         x, dx = self.s[:, None], self.d[:, None]
 
         def of(s, d):
-            return kernel(x, dx, s, d, np.where((dx < 0.5) & (d < 0.5), dx - d, s - x))
+            return self.kernel(x, dx, s, d, np.where((dx < 0.5) & (d < 0.5), dx - d, s - x))
         A = of(self.s[None, :], self.d[None, :]) * self.w
         for p in range(len(self.panels)):
             for q in range(max(0, p - 2), min(len(self.panels), p + 3)):
@@ -100,7 +101,7 @@ class Grid:
             apart = 0.5 * (b - a) * (NODES[i - p * POINTS] - y) * (1 if at_tip else -1)
         else:
             apart = np.where((self.d[i] < 0.5) & (d < 0.5), self.d[i] - d, s - self.s[i])
-        return (weights * kernel(self.s[i], self.d[i], s, d, apart)) @ (LEGENDRE(y, POINTS - 1) @ TO_COEFFICIENTS)
+        return (weights * self.kernel(self.s[i], self.d[i], s, d, apart)) @ (LEGENDRE(y, POINTS - 1) @ TO_COEFFICIENTS)
 
 
 def similarity(toughness, at_tip=44):

@@ -341,10 +341,15 @@ class Growth(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             model = sprekk.Model(scene)
             before, cells = model.field("displacement"), model.mesh.n_owned_cells
-            seen = []
-            model.run(lambda model, step: seen.append(model.fractures()["area"]["crack"]), output=f"{folder}/python")
-            with self.assertRaises(sprekk.StaleField):
-                before[0]
+            seen, fields = [], [before]
+
+            def look(model, step):
+                seen.append(model.fractures()["area"]["crack"])
+                fields.append(model.field("displacement"))
+            model.run(look, output=f"{folder}/python")
+            for field in fields[:-1]:
+                with self.assertRaises(sprekk.StaleField):
+                    field[0]
             self.assertGreater(model.mesh.n_owned_cells, cells)
             (Path(folder) / "scene.xml").write_text(scene.to_xml())
             done = subprocess.run([PROGRAM, "run", f"{folder}/scene.xml", "--output", f"{folder}/program"], capture_output=True, text=True)

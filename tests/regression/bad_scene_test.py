@@ -288,6 +288,7 @@ class Scenes(BadInput):
         self.refuse(['Materials > joint: give either "friction coefficient" or "friction angle"'], "check", xml)
         self.refuse_set(['Fractures > fracture > "source": needs the section "Flow"'], "Fractures.fracture.source=1")
         self.refuse_set(['"fracture": not available with "displacement", "traction", "confining pressure" and "foundation stiffness"'], "Boundary conditions.moved.fracture=fracture")
+        self.refuse_set(['ground > "foundation stiffness": has 3 values, must have 2, or 1 along the normal'], "Boundary conditions.ground.boundary=east", "Boundary conditions.ground.foundation stiffness={1, 1, 1}")
 
     def test_values_at_places(self):
         """Messages about values of expressions contain the section and readable numbers."""

@@ -13,7 +13,7 @@ from program import ProgramTest, main
 try:
     import scipy  # noqa: F401
     from perf.common import options as common
-    from perf.growth import exact, growth, similarity
+    from perf.growth import exact, growth, radial, similarity
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -44,6 +44,17 @@ class Growth(ProgramTest):
         self.assertAlmostEqual(opening, growth.SOFTENED, delta=1e-3)
         self.assertAlmostEqual(2 * K**2, 1, delta=1e-3)  # K^2 = E' G
 
+    def test_circular_fractures_have_the_values_of_their_integral_equations_and_the_limit_of_toughness(self):
+        for value, known in zip(radial.circles((0.5,), at_tip=30, step=1)[0], exact.CIRCLES[0.5]):
+            self.assertAlmostEqual(value / known, 1, delta=2e-5)
+        known, K = exact.Circle(5, growth.PLANE, growth.ENERGY, 10.0, 100.0), math.sqrt(growth.ENERGY * growth.PLANE)
+        radius, opening = known.at(100.0)
+        self.assertAlmostEqual(radius, 10)
+        sharp = (3 * growth.PLANE * known.rate * 100 / (8 * math.sqrt(math.pi) * K)) ** 0.4
+        self.assertAlmostEqual(radius / sharp, 1, delta=4e-3)
+        self.assertAlmostEqual(opening / (4 * K * math.sqrt(radius / math.pi) / growth.PLANE), 1, delta=0.02)
+        self.assertAlmostEqual(growth.ENERGY * growth.PLANE * 32 / math.pi / known.K**2, 1)
+
     def test_the_balance_with_leak_off_has_the_limits_of_toughness_and_leak_off(self):
         x, s = exact.march(200, 1e-4)
         self.assertAlmostEqual(s[-1] / x[-1] ** 1.5, 1, delta=0.2)
@@ -67,6 +78,13 @@ class Growth(ProgramTest):
 
     def test_a_coarse_mesh_grows_as_the_exact_fracture(self):
         self.assertEqual(growth.main(["--quick", "--output", str(self.folder), "--binary", str(program.PROGRAM)]), 0)
+
+    def test_a_sector_grows_as_the_circular_fracture(self):
+        options = common.parser("growth", "").parse_args(["--output", str(self.folder), "--binary", str(program.PROGRAM)])
+        row = growth.circle(options, 0.5, 20)
+        for error, bound in zip(row.errors, (0.025, 0.03)):
+            self.assertLess(abs(error), bound)
+        self.assertLessEqual(statistics.median(row.newton), 6)
 
     def test_steps_in_which_a_face_opens_take_few_iterations(self):
         options = common.parser("growth", "").parse_args(["--output", str(self.folder), "--binary", str(program.PROGRAM)])

@@ -28,8 +28,7 @@ void check_stress(Comparison& c, const std::string& section, const std::vector<b
 bool has_initial_stress(const Scene& scene) {
   const auto& bulk = scene.bulk;
   return !bulk.initial_stress.empty() || bulk.lithostatic_stress || bulk.in_situ_stress ||
-         std::any_of(scene.regions.begin(), scene.regions.end(),
-                     [](const auto& region) { return !region.second.initial_stress.empty(); });
+         std::ranges::any_of(scene.regions, [](const auto& region) { return !region.second.initial_stress.empty(); });
 }
 
 void compare_rock(Comparison& c) {
@@ -119,10 +118,11 @@ void compare_conditions(Comparison& c) {
     const std::string section = "Boundary conditions > " + name;
     c.check_length(section + " > \"displacement\"", condition.displacement.size(), c.names().dim);
     c.check_length(section + " > \"traction\"", condition.traction.size(), c.names().dim);
-    if (const auto n = condition.foundation_stiffness.size(); n != 1)
-      c.check_length(section + " > \"foundation stiffness\"", n, c.names().dim);
-    else if (c.scene().keeps_stress)
-      c.fail(section + " > \"foundation stiffness\"", "one value is not available if stages change stiffnesses");
+    const auto springs = section + " > \"foundation stiffness\"";
+    if (const auto n = condition.foundation_stiffness.size(); n == 1 && c.scene().keeps_stress)
+      c.fail(springs, "one value is not available if stages change stiffnesses");
+    else if (const auto dim = c.names().dim; n > 1 && dim && n != static_cast<std::size_t>(*dim))
+      c.fail(springs, fmt::format("has {} values, must have {}, or 1 along the normal", n, *dim));
     c.check_length(section + " > \"lower corner\"", condition.lower_corner.size(), c.names().dim);
     c.check_length(section + " > \"upper corner\"", condition.upper_corner.size(), c.names().dim);
     const bool given = condition.Mechanics::BoundaryCondition::is_given();

@@ -88,17 +88,22 @@ TEST(Ahead, IsTheFirstOtherFractureOnTheLine) {
 TEST(Fronts, DomainsEndAtOtherRockAndOtherFractures) {
   auto box = unit_steps("triangle", {20, 20});
   box.fractures["a"] = fracture({0, 10}, {10, 10});
-  const auto radius = [&](const Rock& rock) { return fronts_of(box, rock).at(0).radius; };
-  EXPECT_DOUBLE_EQ(radius(uniform), 0.9 * 10);
+  const auto expect = [&](const Rock& rock, Real radius, const std::string& nearest) {
+    const auto point = fronts_of(box, rock).at(0);
+    EXPECT_DOUBLE_EQ(point.radius, 0.9 * radius);
+    EXPECT_EQ(point.nearest, nearest);
+  };
+  expect(uniform, 10, "a boundary");
   for (int k = 0; k < 3; ++k)  // any of the constants differs from x = 15 on
-    EXPECT_DOUBLE_EQ(radius([k](const Vector& x) {
-                       std::array<Real, 3> rock{1, 2, 0};
-                       if (x[0] > 15) rock[k] += 1;
-                       return rock;
-                     }),
-                     0.9 * 5);
+    expect(
+        [k](const Vector& x) {
+          std::array<Real, 3> rock{1, 2, 0};
+          if (x[0] > 15) rock[k] += 1;
+          return rock;
+        },
+        5, "another rock");
   box.fractures["b"] = fracture({16, 0}, {16, 20});
-  EXPECT_DOUBLE_EQ(radius(uniform), 0.9 * 6);
+  expect(uniform, 6, "another fracture");
 }
 
 TEST(Fronts, StraightFrontIn3DHasTheExactIntegralOfItsWeight) {

@@ -98,7 +98,7 @@ TEST(DoubleCantileverBeam, GrowsAsFarAsInLinearFractureMechanics) {
 }
 
 /// With the fracture energy alone, the broken length is shorter than that of a sharp crack by a part of the zone of
-/// three faces, 0.135 * 0.8/0.73 * 3 = 0.44 faces (perf/growth/similarity.py), and by an error of the rock.
+/// three faces, 0.135 * 0.8/0.73 * 3 = 0.44 faces (perf/growth/similarity.py), less an error of the rock.
 TEST(DoubleCantileverBeam, WithASharpFrontIsShorterByAPartOfAFace) {
   for (const int cells : {54, 108}) {
     auto scene = beam(2, {cells, 2 * cells / 9}, 1);
@@ -112,7 +112,8 @@ TEST(DoubleCantileverBeam, WithASharpFrontIsShorterByAPartOfAFace) {
         lag += (exact_length(delta) - length) / (0.54 / cells);
         ++compared;
       }
-    EXPECT_NEAR(lag / compared, 0.44, 0.3) << cells;
+    EXPECT_LT(lag / compared, 0.45) << cells;  // zones of six faces: 0.53 and 0.60
+    EXPECT_GT(lag / compared, 0.2) << cells;
     EXPECT_GT(compared, 5);
   }
 }
