@@ -113,9 +113,9 @@ View<Real*> rounding_by_others(const BlockMatrix& J, int b, LocalIndex n, const 
 
 }  // namespace
 
-/// Returns this round-off for unknowns with values far above their changes (balances) or possibly far above their
-/// scale. Before the first Jacobian of an attempt, the matrix may belong to a distant state. Then balances count only
-/// in the rows of advected balances.
+/// Returns this round-off for unknowns with values far above their changes (balances) or possibly far
+/// above their scale. Before the first Jacobian of an attempt, the matrix may belong to a distant state. Then balances
+/// count only in the rows of advected balances.
 View<Real*> RowSizes::rounding_of_others(int b, const BlockVector& x) const {
   const auto& block = structure_.blocks[b];
   return rounding_by_others(matrix_, b, base::n_local_elements(*block.map), [&](int c) {
@@ -155,36 +155,65 @@ Scales ranges_of_balances(const Comm& comm, const std::vector<Unknown>& unknowns
 
 KOKKOS_INLINE_FUNCTION Real magnitude(Real value) { return value < 0 ? -value : value; }
 
-/// Relative residual of a row: (|r| - noise)/scale. The row of a prescribed unknown is its deviation. Diagonals may be
-/// negative, as in symmetric saddle-point systems.
-struct RowMeasure {
+}  // namespace
+
+/// Rows of a block and their round-off, which measures and merit subtract.
+struct RowSizes::Row {
   ConstView<char*> prescribed;
   ConstView<Real*> r;
   ConstView<Real*> diagonal;  ///< see RowSizes::diagonals_
   ConstView<Real*> present;   ///< diagonal of the last Jacobian
   View<Real*> others;         ///< round-off of other blocks; empty: zero
+  Real rounding;              ///< round-off of the unknown
+  Real stored;                ///< round-off of the storage
+  Real max_noise;
+
+  /// Returns |r| minus the round-off. The row of a prescribed unknown is its deviation, without round-off.
+  KOKKOS_INLINE_FUNCTION Real size(int i) const {
+    if (prescribed(i)) return magnitude(r(i));
+    const Real noise = rounding * magnitude(present(i)) + stored + (others.extent(0) > 0 ? others(i) : 0);
+    const Real size = magnitude(r(i)) - (noise > max_noise ? max_noise : noise);
+    return size <= 0 ? 0 : size;
+  }
+};
+
+RowSizes::Row RowSizes::row(int b, const BlockVector& x, const BlockVector& r) const {
+  constexpr Real largest = 1e-5;  // a solution that diverges until round-off hides the loads has not converged
+  const auto& unknown = structure_.unknowns[b];
+  const Type type = this->type(b);
+  Row row{.prescribed = structure_.constraints[b].mask(),
+          .r = const_view_of(*r[b]),
+          .diagonal = const_view_of(*diagonals_[b]),
+          .present = const_view_of(*present()[b]),
+          .others = rounding_of_others(b, x),
+          .rounding = rounding(x, type == Type::augmented ? unknown.augmented_by : unknown.scale),
+          .stored = 0,
+          .max_noise = type == Type::bulk ? largest * structure_.blocks[b].residual_scale
+                                          : std::numeric_limits<Real>::infinity()};
+  for (const auto& term : unknown.row)
+    if (term.per_step && dt_ > 0) row.stored += term.factor * rounding(x, term.scale) / dt_;
+  return row;
+}
+
+namespace {
+
+/// Relative residual of a row. Diagonals may be negative, as in symmetric saddle-point systems.
+template <class Row>
+struct RowMeasure {
+  Row row;
   Real unknown_scale, row_scale;
-  Real driving;    ///< balances: typical difference of the unknown
-  Real rounding;   ///< round-off of the unknown
-  Real stored;     ///< round-off of the storage
-  Real max_noise;  ///< limit of the noise, relative to the scale
+  Real driving;  ///< balances: typical difference of the unknown
   bool balance, advected;
 
   KOKKOS_INLINE_FUNCTION Real scale(int i) const {
-    if (prescribed(i)) return unknown_scale;
+    if (row.prescribed(i)) return unknown_scale;
     if (!balance) return row_scale;
-    const Real weight = advected && present(i) > diagonal(i) ? present(i) : diagonal(i);
+    const Real weight = advected && row.present(i) > row.diagonal(i) ? row.present(i) : row.diagonal(i);
     return weight * driving < row_scale ? weight * driving : row_scale;
   }
-  KOKKOS_INLINE_FUNCTION Real noise(int i) const {
-    if (prescribed(i)) return 0;
-    const Real noise = rounding * magnitude(present(i)) + stored + (others.extent(0) > 0 ? others(i) : 0);
-    const Real limit = max_noise * scale(i);
-    return noise > limit ? limit : noise;
-  }
   KOKKOS_INLINE_FUNCTION Real value(int i) const {
-    const Real size = magnitude(r(i)), of_noise = noise(i);
-    return size <= of_noise ? 0 : (size - of_noise) / scale(i);
+    const Real size = row.size(i);
+    return size == 0 ? 0 : size / scale(i);
   }
 };
 
@@ -192,36 +221,24 @@ struct RowMeasure {
 
 std::vector<fields::Measure> RowSizes::measures(const BlockVector& x, const BlockVector& r) const {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
-  constexpr Real max_noise = 1e-5;  // a solution that diverges until round-off hides the loads has not converged
   constexpr Real min_range = 1e-4;  // relative to the level of a balanced quantity
   const auto ranges = ranges_of_balances(structure_.comm(), structure_.unknowns, x);
   std::vector<fields::Measure> measures;
   for (int b = 0; b < structure_.n_blocks(); ++b) {
     const auto& unknown = structure_.unknowns[b];
     const auto& block = structure_.blocks[b];
-    const Type row = type(b);
-    RowMeasure measure{.prescribed = structure_.constraints[b].mask(),
-                       .r = const_view_of(*r[b]),
-                       .diagonal = const_view_of(*diagonals_[b]),
-                       .present = const_view_of(*present()[b]),
-                       .others = {},
-                       .unknown_scale = block.kinematic_scale,
-                       .row_scale = block.residual_scale,
-                       .driving = 0,
-                       .rounding = rounding(x, row == Type::augmented ? unknown.augmented_by : unknown.scale),
-                       .stored = 0,
-                       .max_noise = row == Type::bulk ? max_noise : infinity,
-                       .balance = row == Type::balance,
-                       .advected = block.advected};
-    if (row == Type::balance)  // differences of the unknown drive its fluxes: errors are relative to these
+    RowMeasure<Row> measure{.row = row(b, x, r),
+                            .unknown_scale = block.kinematic_scale,
+                            .row_scale = block.residual_scale,
+                            .driving = 0,
+                            .balance = unknown.balance,
+                            .advected = block.advected};
+    if (unknown.balance)  // differences of the unknown drive its fluxes: errors are relative to these
       measure.driving =
           std::min(block.kinematic_scale, std::max(ranges.at(unknown.scale), min_range * block.kinematic_scale));
-    for (const auto& term : unknown.row)
-      if (term.per_step) measure.stored += term.factor * rounding(x, term.scale) / dt_;
-    measure.others = rounding_of_others(b, x);
     Real largest = 0;
     Kokkos::parallel_reduce(
-        "largest", Kokkos::RangePolicy<Execution>(0, measure.r.extent(0)),
+        "largest", Kokkos::RangePolicy<Execution>(0, measure.row.r.extent(0)),
         KOKKOS_LAMBDA(int i, Real& maximum) {
           const Real value = measure.value(i);
           if (!(value <= maximum)) maximum = value == value ? value : infinity;  // also if the value is NaN
@@ -235,19 +252,16 @@ std::vector<fields::Measure> RowSizes::measures(const BlockVector& x, const Bloc
 namespace {
 
 /// Summand of the merit: w (|r| - noise)^2. The weight w is given, or 1/diagonal.
+template <class Row>
 struct RowMerit {
-  ConstView<char*> prescribed;
-  ConstView<Real*> r, diagonal, present;  ///< as in RowMeasure
-  View<Real*> others;                     ///< round-off of other blocks; empty: zero
-  ConstView<Real*> weight;                ///< empty: 1/diagonal
-  Real rounding;                          ///< round-off of the unknown
+  Row row;
+  ConstView<Real*> weight;  ///< empty: 1/diagonal
 
   KOKKOS_INLINE_FUNCTION Real value(int i) const {
-    const Real noise = rounding * magnitude(present(i)) + (others.extent(0) > 0 ? others(i) : 0);
-    const Real size = magnitude(r(i)) - noise;
-    if (prescribed(i) || size <= 0) return 0;
+    const Real size = row.size(i);
+    if (row.prescribed(i) || size == 0) return 0;
     if (weight.extent(0) > 0) return weight(i) * size * size;
-    const Real w = magnitude(diagonal(i));
+    const Real w = magnitude(row.diagonal(i));
     return w > 0 ? 1 / w * size * size : 0;
   }
 };
@@ -264,17 +278,11 @@ Real RowSizes::merit(const BlockVector& x, const BlockVector& r) const {
     const auto& unknown = structure_.unknowns[b];
     const auto& block = structure_.blocks[b];
     const bool powers = unknown.balance && structure_.coupled, weighted = !powers && !weights_[b].is_null();
-    const RowMerit row{.prescribed = structure_.constraints[b].mask(),
-                       .r = const_view_of(*r[b]),
-                       .diagonal = const_view_of(*diagonals_[b]),
-                       .present = const_view_of(*present()[b]),
-                       .others = rounding_of_others(b, x),
-                       .weight = weighted ? const_view_of(*weights_[b]) : ConstView<Real*>(),
-                       .rounding = unknown.balance ? rounding(x, unknown.scale) : 0};
+    const RowMerit<Row> merit{row(b, x, r), weighted ? const_view_of(*weights_[b]) : ConstView<Real*>()};
     Real part = 0;
     Kokkos::parallel_reduce(
-        "merit", Kokkos::RangePolicy<Execution>(0, row.r.extent(0)),
-        KOKKOS_LAMBDA(int i, Real& s) { s += row.value(i); }, part);
+        "merit", Kokkos::RangePolicy<Execution>(0, merit.row.r.extent(0)),
+        KOKKOS_LAMBDA(int i, Real& s) { s += merit.value(i); }, part);
     const Real share = block.advected ? share_at_work : 1;
     const Real unit = block.advected ? block.kinematic_scale : 1;  // makes these rows powers
     sum += share * (powers ? dt_ * part / unit : part);            // energy: power times time

@@ -8,10 +8,11 @@
 
 namespace sprekk::assembly {
 
-/// The residual of a row has a round-off of its diagonal times the round-off of the unknowns. Measures subtract it. It
-/// is relevant for slivers, which are stiff, and for nearly incompressible rock. Augmented rows contain differences of
-/// both sides times the augmentation constant. Where soft rock carries stiff rock over a long distance, the round-off
-/// of the differences exceeds the deformation of the stiff rock.
+/// The residual of a row has a round-off of its diagonal times the round-off of the unknowns. Measures and merit
+/// subtract it: otherwise round-off would reject steps that reduce the measures. It is relevant for slivers, which are
+/// stiff, and for nearly incompressible rock. Augmented rows contain differences of both sides times the augmentation
+/// constant. Where soft rock carries stiff rock over a long distance, the round-off of the differences exceeds the
+/// deformation of the stiff rock.
 class RowSizes {
  public:
   /// Finds weights and diagonals for the linear part and the balances of a Jacobian. The arguments must outlive this
@@ -38,7 +39,9 @@ class RowSizes {
 
  private:
   enum class Type { bulk, augmented, balance };
+  struct Row;
   Type type(int block) const;
+  Row row(int block, const fields::BlockVector& x, const fields::BlockVector& r) const;
   Real rounding(const fields::BlockVector& x, const std::string& scale) const;
   View<Real*> rounding_of_others(int block, const fields::BlockVector& x) const;
   const fields::BlockVector& present() const { return present_.empty() ? diagonals_ : present_; }

@@ -24,7 +24,7 @@ namespace {
 using NOX::StatusTest::StatusType;
 
 constexpr int max_lagged = 60;  // steps with lagged coefficients
-constexpr int max_additional = 2;
+constexpr int max_additional = 2, max_hidden = 3;
 
 /// Convergence test. Converged: all measures are at most the tolerance. If round-off hides an error of the sums of
 /// balances, up to two full steps follow while they halve it. Failed: a measure or the residual is not finite, no
@@ -48,10 +48,9 @@ class MeasureTest : public NOX::StatusTest::Generic {
     status_ = NOX::StatusTest::Unconverged;
     if (report_.iterations == 0) balances_.start(report_.measures, options_.tolerance);
     balances_.note(group.f());
-    const bool is_hidden = value <= options_.tolerance && report_.iterations > 0 &&
-                           balances_.imbalance(group.x()) > BalanceCheck::largest_hidden;
-    const bool within_tolerance =
-        value <= options_.tolerance && !is_hidden && !(picard_.lags() && picard_.n_steps() > 0);
+    const bool lags = picard_.lags() && picard_.n_steps() > 0;
+    const bool is_hidden = value <= options_.tolerance && report_.iterations > 0 && !lags && hides_imbalance(group);
+    const bool within_tolerance = value <= options_.tolerance && !is_hidden && !lags;
     if (!std::isfinite(group.getNormF())) {
       fail("the residual is not finite");
     } else if (within_tolerance) {
@@ -88,12 +87,21 @@ class MeasureTest : public NOX::StatusTest::Generic {
   }
 
  private:
+  /// Returns whether the sum of a balance exceeds its flows. False after three such iterates without a reduction by
+  /// half: the sum is then the round-off of large stored amounts, and the flows of the step are smaller.
+  bool hides_imbalance(const NoxGroup& group) {
+    const Real imbalance = balances_.imbalance(group.x());
+    if (!(imbalance > BalanceCheck::largest_hidden)) return false;
+    n_hidden_ = imbalance <= 0.5 * least_hidden_ ? 1 : n_hidden_ + 1;
+    least_hidden_ = std::min(least_hidden_, imbalance);
+    return n_hidden_ <= max_hidden;
+  }
   /// Saves the iterate if another one follows and it is the best so far.
   bool needs_another_iteration(const NoxGroup& group) {
     const Real imbalance = report_.iterations == 0 ? 0 : balances_.imbalance(group.x());
     const bool is_best = imbalance <= least_imbalance_;
     const bool is_last = n_additional_ == max_additional || (n_additional_ > 0 && imbalance > 0.5 * least_imbalance_);
-    if (imbalance <= BalanceCheck::allowed || is_last) {
+    if (imbalance <= BalanceCheck::allowed || is_last || n_hidden_ > max_hidden) {
       if (is_best) accepted_.clear();
       return false;
     }
@@ -120,6 +128,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
   NewtonReport& report_;
   BalanceCheck balances_;
   int n_additional_ = 0;  // iterations after the measures have converged
+  int n_hidden_ = 0;      // iterates since the last reduction of an imbalance above the flows
+  Real least_hidden_ = std::numeric_limits<Real>::infinity();
   BlockVector accepted_;
   Real least_imbalance_ = std::numeric_limits<Real>::infinity();
   std::vector<fields::Measure> measures_of_accepted_;

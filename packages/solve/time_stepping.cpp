@@ -125,7 +125,8 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
     auto newton = solve_from_prediction(at, report.time, end - report.time, report);
-    if (!newton.converged && !newton.stopped && !relaxed && options_.proximal_continuation && size <= largest_relaxed) {
+    const bool relaxes = options_.proximal_continuation && size <= largest_relaxed && (!relaxed || size == 1);
+    if (!newton.converged && !newton.stopped && relaxes) {
       relaxed = true;
       at = committed;
       if (auto found = relax(at, report); found.converged || found.stopped) newton = std::move(found);

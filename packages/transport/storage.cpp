@@ -67,8 +67,7 @@ struct StorageCell {
     return change;
   }
   KOKKOS_INLINE_FUNCTION void jacobian(int e, const Real (&x)[1], Real (&J)[1][1]) const {
-    const Real space = room(e) + growth(e) * (x[0] - initial(e));
-    J[0][0] = volume(e) * rate * fluid.density(x[0]) * (space * fluid.compressibility + growth(e));
+    J[0][0] = volume(e) * rate * slope(e, x[0] - initial(e));
   }
 };
 

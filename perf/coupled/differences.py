@@ -55,13 +55,15 @@ class Scales:
             self.largest["heat flux"] = max(self.largest["heat flux"], ROUNDING / ALLOWED * level * (conducts / edge + carries))
 
     def _min_stresses(self, written):
-        """Thermal stress and expansion are known to the rounding of temperature: 1e-14 of its level."""
+        """Thermal stress and expansion are known to the rounding of temperature, strains to that of stress: 1e-14 of its level."""
         rocks = [m for m in written.entries["Materials"].values() if "Young's modulus" in m]
         level = ROUNDING / ALLOWED * (abs(self.start["temperature"]) + self.largest.get("temperature", 0))
         expansion = level * max((float(m.get("thermal expansion", 0)) for m in rocks), default=0)
         stiffness = max((float(m["Young's modulus"]) for m in rocks), default=0)
+        softest = min((float(m["Young's modulus"]) for m in rocks), default=np.inf)
+        strain = expansion + ROUNDING / ALLOWED * self.largest.get("stress", 0) / softest
         extent = np.ptp(written.states[0].bulk.points, axis=0).max()
-        for kind, minimum in (("stress", stiffness * expansion), ("length", extent * expansion)):
+        for kind, minimum in (("stress", stiffness * expansion), ("length", extent * strain)):
             if kind in self.largest:
                 self.largest[kind] = max(self.largest[kind], minimum)
 

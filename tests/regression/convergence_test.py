@@ -9,6 +9,7 @@ from program import ProgramTest, main
 from perf.common import scene_file
 
 N_SCENES, SEED = (int(word) for word in (*sys.argv[4:6], *("12", "1")[len(sys.argv[4:6]):]))
+BELOW_ROUND_OFF = [(3, 85)]  # (seed, scene): the flows of a step are below the round-off of the stored fluid
 ROCK = {"type": "elastic", "Young's modulus": 25e9, "Poisson's ratio": 0.25}
 
 
@@ -95,10 +96,10 @@ class Convergence(ProgramTest):
                 self.cheap(results, 1, f"{name}, {end}, {scheme}")
 
     def test_small_changes_take_few_iterations(self):
-        for number in range(N_SCENES):
-            tree = small_change(random.Random(f"{SEED} {number}"))
+        for seed, number in [(SEED, k) for k in range(N_SCENES)] + BELOW_ROUND_OFF:
+            tree = small_change(random.Random(f"{seed} {number}"))
             tree["Output"] = {"vtu": False}
-            self.cheap(self.run_tree(tree), 6, f"scene {number} of seed {SEED}: {tree}")
+            self.cheap(self.run_tree(tree), 6, f"scene {number} of seed {seed}: {tree}")
 
     def sliding(self, dim, dilation):
         """Returns a scene with slip and dilation of a fault by injection, with constant well pressure after t = 1."""

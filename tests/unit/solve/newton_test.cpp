@@ -227,6 +227,30 @@ TEST(Newton, ReturnsTheIterateWithTheSmallestImbalance) {
   }
 }
 
+/// The merit disregards round-off.
+class HiddenImbalances : public GivenImbalances {
+ public:
+  using GivenImbalances::GivenImbalances;
+  Real merit(const Evaluation& at, const BlockVector&) override { return at.x()[0]->getData()[0] == 0 ? 1 : 0; }
+};
+
+/// An iterate is no solution while a sum exceeds the flows and decreases. A sum that three iterations do not halve is
+/// round-off of large stored amounts.
+TEST(Newton, AcceptsASumOfRoundOffAboveTheFlows) {
+  for (const auto& imbalances : std::vector<std::vector<Real>>{
+           {1, 30, 9, 2, 1e-9}, {1, 30, 29, 31, 32, 1e-10}, {1, 30, 29, 14, 13, 12, 15, 1e-10}}) {
+    HiddenImbalances problem(Tpetra::getDefaultComm(), imbalances);
+    Newton newton(problem, {});
+    auto x = problem.constant(0);
+    problem.set_time(1, 1);
+    const auto report = newton.solve(x);
+    ASSERT_TRUE(report.converged) << report.reason;
+    const int expected = imbalances.size() > 6 ? 6 : 4;
+    EXPECT_EQ(report.iterations, expected);
+    EXPECT_NEAR(x[0]->getData()[0], problem.iterate(expected), 1e-12);
+  }
+}
+
 TEST(Newton, SolvesALinearProblemOnceAndKeepsItsFactors) {
   GridProblem problem(Tpetra::getDefaultComm(), {2, 6, 6, false, true, -1});
   Newton newton(problem, {});

@@ -63,6 +63,23 @@ TEST(TimeStepper, CreepsWhereNewtonFails) {
   EXPECT_EQ(problem.proximal_terms.back(), 0);
 }
 
+/// Proximal continuation fails in the whole step, but not in the smallest substep.
+TEST(TimeStepper, CreepsAgainInTheSmallestSubstep) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real dt) { return dt <= 0.3 ? x - 3 : 1 + x * x; },
+      [](Real x, Real, Real dt) { return dt > 0.3              ? 2 * x + 1e-3
+                                         : std::abs(x - 3) > 1 ? -0.05
+                                                               : 1; });
+  problem.proximal_stiffness = 1;
+  Newton newton(problem, {});
+  TimeStepper stepper(problem, newton, {.max_halvings = 2});
+  auto x = problem.constant(0);
+  Real t = 0;
+  const auto report = stepper.advance(x, t, 1);
+  ASSERT_TRUE(report.converged) << report.reason;
+  EXPECT_EQ(problem.committed_times, (std::vector<Real>{0.25, 0.5, 0.75, 1}));
+}
+
 TEST(TimeStepper, HalvesThreeTimesBeforeProximalContinuationWhereShorterStepsAreEasier) {
   auto problem = misled();
   problem.proximal_stiffness = 1;
