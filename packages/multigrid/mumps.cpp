@@ -67,10 +67,9 @@ std::string Mumps::factor(const RCP<const CrsMatrix>& A, bool symmetric) {
 
 void Mumps::count_operations() {
   const int entries = mumps_.infog[8];  // if negative, in millions
-  Real counts[] = {mumps_.rinfog[2], entries < 0 ? -1e6 * entries : Real(entries)};
-  Teuchos::broadcast(*comm_, 0, 2, counts);
-  operations_ = counts[0];
-  entries_ = counts[1];
+  size_[0] = mumps_.rinfog[2];
+  size_[1] = entries < 0 ? -1e6 * entries : Real(entries);
+  Teuchos::broadcast(*comm_, 0, 2, size_);
 }
 
 std::string Mumps::substitute(const Vector& b, Vector& x) {
