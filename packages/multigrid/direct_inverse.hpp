@@ -23,6 +23,10 @@ class DirectInverse : public fields::Operator {
   /// Factorises the present values. Throws an Error on all ranks if they are singular. Collective.
   void setup(bool symmetric);
 
+  /// Return the floating-point operations of the last setup() and the entries of the factors; 0: dense. Stored data.
+  Real operations() const { return mumps_ ? mumps_->operations() : 0; }
+  Real entries() const { return mumps_ ? mumps_->entries() : 0; }
+
   RCP<const fields::Map> getDomainMap() const override { return map_; }
   RCP<const fields::Map> getRangeMap() const override { return map_; }
   /// Computes y = A^-1 b. Throws an Error if MUMPS fails.

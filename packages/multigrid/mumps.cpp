@@ -66,10 +66,10 @@ std::string Mumps::factor(const RCP<const CrsMatrix>& A, bool symmetric) {
 }
 
 void Mumps::count_operations() {
-  const int entries = mumps_.infog[8];  // of the factors; if negative, in millions
-  operations_[0] = mumps_.rinfog[2];
-  operations_[1] = (symmetric_ ? 4 : 2) * (entries < 0 ? -1e6 * entries : Real(entries));
-  Teuchos::broadcast(*comm_, 0, 2, operations_);
+  const int entries = mumps_.infog[8];  // if negative, in millions
+  size_[0] = mumps_.rinfog[2];
+  size_[1] = entries < 0 ? -1e6 * entries : Real(entries);
+  Teuchos::broadcast(*comm_, 0, 2, size_);
 }
 
 std::string Mumps::substitute(const Vector& b, Vector& x) {

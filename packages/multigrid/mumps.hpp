@@ -35,9 +35,11 @@ class Mumps {
   /// an empty string.
   std::string substitute(const Vector& b, Vector& x);
 
-  /// Return the floating-point operations of the last factor() and of a substitute(). Stored data, equal on all ranks.
-  Real operations() const { return operations_[0]; }
-  Real operations_of_substitution() const { return operations_[1]; }
+  /// Return the floating-point operations of the last factor() and of a substitute(), and the entries of the factors.
+  /// Stored data, equal on all ranks.
+  Real operations() const { return size_[0]; }
+  Real operations_of_substitution() const { return (symmetric_ ? 4 : 2) * entries(); }
+  Real entries() const { return size_[1]; }
 
   /// Returns all controls that differ from the defaults of MUMPS. Stored data.
   const Teuchos::ParameterList& parameters() const { return parameters_; }
@@ -60,8 +62,8 @@ class Mumps {
   DMUMPS_STRUC_C mumps_{};
   MPI_Comm mpi_comm_ = MPI_COMM_NULL;
   bool ready_ = false, analysed_ = false, symmetric_ = false;
-  bool gathers_ = false;         // rank 0 receives the whole matrix
-  Real operations_[2] = {0, 0};  // of factor() and substitute()
+  bool gathers_ = false;   // rank 0 receives the whole matrix
+  Real size_[2] = {0, 0};  // of the last factor(): operations, entries
   std::string failure_ = "the matrix was not set up";
   RCP<const CrsMatrix> matrix_;
   std::vector<int> counts_, starts_;    // [rank] number and start of values

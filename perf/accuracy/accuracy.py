@@ -9,6 +9,7 @@ import style
 
 from perf.common import options as common
 from perf.common import program, table
+from perf.networks.scale import ROCK
 from perf.verification import exact, meshes, scenes
 
 ROOT = program.ROOT
@@ -18,6 +19,10 @@ OVERSHOOT = 1.5  # allowed ratio of the true error to the request
 SPEEDUP = {2: 5, 3: 3}  # at 1 %
 REFERENCE = 5e-5  # request of the reference run, if no exact value is known
 TIME_LIMIT = 1800
+# steady injection into the network of a stressed rock: half of the area of the steep fractures slips
+INJECTION = ("Bulk.initial stress={-9e6, -9e6, -25e6, 0, 0, 0}", "Boundary conditions.lid.displacement={0, 0, 0}", "Boundary conditions.floor.pressure=0",
+             "Tables.confinement.values={9e6, 9e6, 9e6}", "Tables.confinement.arguments={0, 1e9, 1e10}", "Time.end=1e9", "Time.steps=1",
+             "Flow.Wells.well.points={5, 5, 1, 5, 5, 9}", "Flow.Wells.well.radius=0.002", "Flow.Wells.well.pressure=9e6")
 
 
 @dataclass
@@ -84,6 +89,7 @@ def cases():
     strip = lambda h: lambda folder: meshes.wavy(folder, h)  # noqa: E731
     wavy = exact.Wavy(0.4, 1, 0.25)
     fractures = lambda *sizes: lambda folder: network(folder, *sizes)  # noqa: E731
+    rectangles = [lambda folder, sizes=sizes: network(folder, *sizes, corners=4) for sizes in ((1, 3, 5), (0.5, 1, 4), (0.25, 0.5, 2), (0.12, 0.25, 2))]
     halved = [(fractures(1, 2, 4), f"Mesh file.refinements={n}") for n in (0, 1)]
     flow = dict(scene="flow/network_2d.xml", quantity="flow", coarse=box(10)[0], uniform=box(10, 20, 40, 80, 160, 320), uniform_2=[], orders=(1,))
     steady = ("Flow.compressibility=0", "Time.steps=1")
@@ -99,6 +105,8 @@ def cases():
              dimension=3),
         Case("network", "networks/random_3d_50.xml", "slip", "", fractures(1, 2, 4), halved, uniform_2=halved, dimension=3, requests=REQUESTS[:1],
              orders=(2,), finest=fractures(0.1, 0.15, 2), seconds=900, sets=("Time.schedule={1, 11}",)),
+        Case("injection", "networks/random_3d_50.xml", "slip", "", rectangles[0], rectangles[:3], uniform_2=rectangles[:2], dimension=3,
+             requests=REQUESTS[:1], orders=(2,), finest=rectangles[3], sets=(*ROCK, *INJECTION)),
         Case("wavy contact", "verification/wavy.xml", "opening", "", strip(0.1), [strip(h) for h in (0.1, 0.05, 0.025, 0.0125, 0.00625)],
              float(wavy.opening_mean(0.0, 0.5))),
         Case("T junction", "verification/t_junction.xml", "slip", "horizontal", junction(1, 0.5),
@@ -118,11 +126,12 @@ def cases():
     ]
 
 
-def network(folder, relative, at_tips, size):
-    """Mesh of the scene random_3d_50 with other cell sizes. Raises NoGmsh if it fails."""
-    file = folder / f"network_50_{relative:g}_{at_tips:g}_{size:g}.msh"
+def network(folder, relative, at_tips, size, corners=8):
+    """Mesh of the scene random_3d_50 with other cell sizes and corners of fractures. Raises NoGmsh if it fails."""
+    file = folder / f"network_50_{relative:g}_{at_tips:g}_{size:g}_{corners}.msh"
     if not file.is_file():
-        sizes = (f"relative size={relative:g}", f"size at tips={at_tips:g} m", f"size={size:g}")
+        sizes = (f"relative size={relative:g}", f"size at tips={at_tips:g} m", f"size={size:g}",
+                 *(f"fractures.{name}.random.corners={corners}" for name in ("steep", "flat")))
         try:
             program.mesh(ROOT / "build/apps/sprekk/sprekk", "networks/random_3d_50.xml", file, [f"Mesh file.network.{size}" for size in sizes])
         except program.Failed as error:

@@ -4,6 +4,7 @@ The scenes are a grid of fractures, open, sticking and sliding, and a network of
 bandwidth.cpp measures the times."""
 import json
 
+from perf.bandwidth import factors
 from perf.common import options as common
 from perf.common import table
 from perf.common.program import measured, mesh
@@ -111,7 +112,10 @@ def main(words):
     parser = common.parser("bandwidth", __doc__, program=True)
     parser.add_argument("--edge", type=common.count, metavar="N", help=f"cells along an edge of the box ({EDGE}, 111 thousand unknowns; {QUICK} with --quick)")
     parser.add_argument("--ranks", type=common.count, default=1, metavar="N", help="ranks (1)")
+    parser.add_argument("--factors", action="store_true", help="instead: estimated and measured costs of factors and of multigrid")
     options = parser.parse_args(words)
+    if options.factors:
+        return factors.measure(options)
     chosen = common.matching(options, CELLS if options.quick else (*CELLS, "network"))
     edge = options.edge or (QUICK if options.quick else EDGE)
     printed, measured = table.Table(COLUMNS, 42), {}

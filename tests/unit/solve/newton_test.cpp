@@ -69,18 +69,19 @@ class OpeningProblem : public ScalarProblem {
         lags_(lags) {}
 
   /// Updates a with a relaxation suited to the slope -3.
-  Real lag(Lag how, const Evaluation& x) override {
+  LagChange lag(Lag how, const Evaluation& x) override {
     if (!lags_ || how == Lag::none) {
       given_ = 0;
-      return lags_ ? 0 : -1;
+      return {lags_ ? 0. : -1.};
     }
     const auto values = x.x()[0]->getData();
     const Real found = width(values.size() == 0 ? 0 : values[0]);
-    const Real here = given_ > 0 && values.size() > 0 ? std::abs(std::log(found / given_)) : 0;
+    const Real ratio = given_ > 0 && values.size() > 0 ? std::log(found / given_) : 0,
+               here[] = {std::abs(ratio), ratio};
     given_ = how == Lag::widest ? 1e2 : given_ > 0 ? given_ * std::pow(found / given_, 0.25) : found;
-    Real away = 0;
-    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &away);
-    return away;
+    Real change[2];
+    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 2, here, change);
+    return {change[0], change[1]};
   }
 
  private:
@@ -102,6 +103,18 @@ TEST(Newton, FindsWhatAFluidOpensFromFixedPointsOnly) {
     EXPECT_LE(report.iterations, 15);
     for (const Real found : x[0]->getData()) EXPECT_NEAR(found, 1, 1e-10);
   }
+}
+
+/// The first step decreases the coefficient, so it is not repeated with a large one.
+TEST(Newton, KeepsAFirstStepThatClosesAPath) {
+  OpeningProblem problem(Tpetra::getDefaultComm(), true);
+  Newton newton(problem, {});
+  auto x = problem.constant(3);
+  problem.set_time(1, 1);
+  const auto report = newton.solve(x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_LE(report.iterations, 3);
+  for (const Real found : x[0]->getData()) EXPECT_NEAR(found, 1, 1e-10);
 }
 
 /// When the flow begins, a solve of the carried quantity alone replaces its step, which is linearised about the state
