@@ -72,13 +72,17 @@ void Mumps::count_operations() {
   Teuchos::broadcast(*comm_, 0, 2, size_);
 }
 
-std::string Mumps::substitute(const Vector& b, Vector& x) {
+std::string Mumps::substitute(const MultiVector& b, MultiVector& x) {
   if (!failure_.empty()) return failure_;
+  if (at_root_->getNumVectors() != b.getNumVectors())
+    at_root_ = rcp(new MultiVector(at_root_->getMap(), b.getNumVectors()));
   at_root_->doImport(b, *to_root_, Tpetra::INSERT);
   int info = 0;
   {
     const auto rhs = at_root_->getLocalViewHost(Tpetra::Access::ReadWrite);
     mumps_.rhs = rhs.data();
+    mumps_.nrhs = static_cast<int>(rhs.extent(1));
+    mumps_.lrhs = static_cast<int>(std::max<std::size_t>(1, rhs.stride(1)));
     info = run(Job::substitute);
   }
   x.doImport(*at_root_, *from_root_, Tpetra::INSERT);
@@ -120,7 +124,7 @@ void Mumps::start(bool symmetric) {
   const auto root_map = rcp(new fields::Map(n, root ? n : 0, 0, comm_));
   to_root_ = rcp(new fields::Import(matrix_->getRowMap(), root_map));
   from_root_ = rcp(new fields::Import(root_map, matrix_->getRowMap()));
-  at_root_ = rcp(new Vector(root_map));
+  at_root_ = rcp(new MultiVector(root_map, 1));
   gathers_ = max_ranks_ < comm_->getSize();
   const auto factored = gathers_ ? places_on_root() : matrix_;
   MPI_Comm_split(all_ranks(), comm_->getRank() < max_ranks_ ? 0 : MPI_UNDEFINED, comm_->getRank(), &mpi_comm_);

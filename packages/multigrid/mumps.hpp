@@ -14,6 +14,7 @@
 namespace sprekk::multigrid {
 
 using fields::CrsMatrix;
+using fields::MultiVector;
 using fields::Vector;
 
 /// Factors L U, or L D L^T for symmetric matrices. Unknowns must be numbered from 0 without gaps. All members are
@@ -31,9 +32,9 @@ class Mumps {
   /// Throws an Error if unknowns are not numbered from 0 without gaps.
   std::string factor(const RCP<const CrsMatrix>& A, bool symmetric);
 
-  /// Computes x = A^-1 b with the accuracy of the factors. Returns an error message, also that of the last factor(), or
-  /// an empty string.
-  std::string substitute(const Vector& b, Vector& x);
+  /// Computes x = A^-1 b with the accuracy of the factors, for all columns of b together. Returns an error message,
+  /// also that of the last factor(), or an empty string.
+  std::string substitute(const MultiVector& b, MultiVector& x);
 
   /// Return the floating-point operations of the last factor() and of a substitute(), and the entries of the factors.
   /// Stored data, equal on all ranks.
@@ -72,7 +73,7 @@ class Mumps {
   std::vector<std::size_t> positions_;  // indices of the values passed to MUMPS; empty: all
   std::vector<double> values_;          // values of these entries
   RCP<fields::Import> to_root_, from_root_;
-  RCP<Vector> at_root_;  // whole vector on rank 0
+  RCP<MultiVector> at_root_;  // whole vectors on rank 0
 };
 
 }  // namespace sprekk::multigrid

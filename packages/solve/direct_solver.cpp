@@ -19,12 +19,9 @@ class Factors : public fields::Operator {
   RCP<const fields::Map> getRangeMap() const override { return map_; }
   void apply(const fields::MultiVector& x, fields::MultiVector& y, Teuchos::ETransp, Real alpha,
              Real beta) const override {
-    Vector b(map_), z(map_);
-    for (std::size_t v = 0; v < x.getNumVectors(); ++v) {
-      Tpetra::deep_copy(b, *x.getVector(v));
-      SPREKK_CHECK(mumps_.substitute(b, z).empty(), "substitution failed");
-      y.getVectorNonConst(v)->update(alpha, z, beta);
-    }
+    fields::MultiVector z(map_, x.getNumVectors());
+    SPREKK_CHECK(mumps_.substitute(x, z).empty(), "substitution failed");
+    y.update(alpha, z, beta);
   }
 
  private:

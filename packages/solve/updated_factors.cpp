@@ -11,6 +11,7 @@ namespace {
 constexpr Real min_residual = 1e-9, max_residual = 1e-4;  // required relative residual
 constexpr Real max_numbers = 1e9;                         // of G and of I - Q G on all ranks
 constexpr int max_refinements = 3, max_failures = 3;
+constexpr int columns_together = 32;  // of G in a substitution
 
 }  // namespace
 
@@ -55,20 +56,25 @@ void UpdatedFactors::compute_responses() {
   change_.choose();
   const int n = change_.n_chosen();
   import_ = rcp(new fields::Import(J_->row_map(), change_.map()));
-  Vector U(J_->row_map()), column(J_->row_map()), needed(change_.map());
   const std::size_t n_rows = base::n_local_elements(*change_.map());
   G_.assign(n_rows * n, 0);
   std::vector<Real> s(change_.n_here());
-  for (int j = 0; j < n; ++j) {
-    const int here = j - change_.first();
-    const bool owned = here >= 0 && here < change_.n_here();
-    if (owned) s[here] = 1;
-    change_.expand(s, U);
-    if (owned) s[here] = 0;
-    solver_->preconditioner()->apply(U, column);
-    needed.doImport(column, *import_, Tpetra::INSERT);
-    const auto value = needed.getLocalViewHost(Tpetra::Access::ReadOnly);
-    for (std::size_t i = 0; i < n_rows; ++i) G_[i * n + j] = value(i, 0);
+  for (int j = 0; j < n; j += columns_together) {
+    const int n_columns = std::min(columns_together, n - j);
+    fields::MultiVector U(J_->row_map(), n_columns), columns(J_->row_map(), n_columns),
+        needed(change_.map(), n_columns);
+    for (int k = 0; k < n_columns; ++k) {
+      const int here = j + k - change_.first();
+      const bool owned = here >= 0 && here < change_.n_here();
+      if (owned) s[here] = 1;
+      change_.expand(s, *U.getVectorNonConst(k));
+      if (owned) s[here] = 0;
+    }
+    solver_->preconditioner()->apply(U, columns);
+    needed.doImport(columns, *import_, Tpetra::INSERT);
+    const auto values = needed.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (std::size_t i = 0; i < n_rows; ++i)
+      for (int k = 0; k < n_columns; ++k) G_[i * n + j + k] = values(i, k);
   }
   active_ = true;
 }

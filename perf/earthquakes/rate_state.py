@@ -88,14 +88,14 @@ def slider_errors(onsets, largest, exact):
             "largest rate": abs(largest / exact.largest - 1)}
 
 
-def crossings(times, rates):
-    """Times at which the rate passes SEISMIC, linear in the logarithm of the rate, after it fell below a tenth."""
+def crossings(times, rates, seismic=reference.SEISMIC):
+    """Times at which the rate passes `seismic`, linear in the logarithm of the rate, after it fell below a tenth."""
     found, fast = [], False
     for k, rate in enumerate(rates):
-        if rate > reference.SEISMIC and not fast and k:
+        if rate > seismic and not fast and k:
             low, high = np.log(rates[k - 1 : k + 1])
-            found.append(times[k - 1] + (np.log(reference.SEISMIC) - low) / (high - low) * (times[k] - times[k - 1]))
-        fast = rate > (reference.SEISMIC / 10 if fast else reference.SEISMIC)
+            found.append(times[k - 1] + (np.log(seismic) - low) / (high - low) * (times[k] - times[k - 1]))
+        fast = rate > (seismic / 10 if fast else seismic)
     return found
 
 

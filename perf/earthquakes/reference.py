@@ -113,15 +113,15 @@ class Line:
 @dataclass
 class Solution:
     states: np.ndarray  # at the requested times
-    onsets: list        # times at which the largest slip rate exceeds SEISMIC
+    onsets: list        # times at which the largest slip rate exceeds that of an event
     largest: float      # slip rate
     steps: int
     rejected: int
 
 
-def solve(system, times, tolerance, first_step=None):
+def solve(system, times, tolerance, first_step=None, seismic=SEISMIC):
     """Integrates to the last of the times, with the local error `tolerance` relative to the system's scales of slip and
-    state. The largest slip rate is that of the ends of the steps."""
+    state. The largest slip rate is that of the ends of the steps; `seismic` is that of an event."""
     method = RK45(system, 0.0, system.start, times[-1], rtol=tolerance, atol=tolerance * system.scale,
                   first_step=first_step)
     states, onsets, steps, fast, largest = [], [], 0, False, 0.0
@@ -136,19 +136,19 @@ def solve(system, times, tolerance, first_step=None):
             states.append(between(times[len(states)]))
         rate = np.max(system.slip_rate(method.t, method.y))
         largest = max(largest, rate)
-        if rate > SEISMIC and not fast:
-            onsets.append(crossing(system, between, method.t_old, method.t))
-        fast = rate > (SEISMIC / 10 if fast else SEISMIC)
+        if rate > seismic and not fast:
+            onsets.append(crossing(system, between, method.t_old, method.t, seismic))
+        fast = rate > (seismic / 10 if fast else seismic)
     return Solution(np.array(states), onsets, float(largest), steps, (method.nfev - 2) // 6 - steps)
 
 
-def crossing(system, between, low, high):
-    """Time in the step at which the largest slip rate passes SEISMIC, by bisection."""
+def crossing(system, between, low, high, seismic):
+    """Time in the step at which the largest slip rate passes `seismic`, by bisection."""
     while high - low > 1e-14 * high:
         middle = (low + high) / 2
         if middle in (low, high):
             break
-        below = np.max(system.slip_rate(middle, between(middle))) < SEISMIC
+        below = np.max(system.slip_rate(middle, between(middle))) < seismic
         low, high = (middle, high) if below else (low, middle)
     return high
 

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Measurement perf/earthquakes: perf_earthquakes_test.py PROGRAM ROOT MPIEXEC. Status 77 without NumPy or SciPy.
 
-Tractions of slip on vertical faults: images in a box, long cells in 3D, and reciprocity."""
+Tractions of slip on vertical faults: images in a box, long cells in 3D, and reciprocity. Start of a strike-slip fault."""
 import sys
 
 from program import ProgramTest, main
 
 try:
     import numpy as np
-    from perf.earthquakes import half_plane, half_space
+    import read
+    from perf.earthquakes import half_plane, half_space, strike_slip_scene
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -43,6 +44,18 @@ class Kernels(ProgramTest):
     def test_tractions_of_distant_cells_are_reciprocal(self):
         kernel = half_space.kernel(1000.0, 20, 12)[8:]
         self.assert_close(kernel, kernel.transpose(0, 2, 1), 1e-2)
+
+    def test_strike_slip_scene_starts_at_the_slip_rates_of_the_problem(self):
+        file = self.folder / "strike_slip.xml"
+        strike_slip_scene.write_scene(file, 4000.0, 1e-3)
+        self.run_scene(file, "Time.first step=1e-3", "Output.vtu=true")
+        faces = read.surface(read.grid(read.written_steps(self.folder / "out", "fractures")[-1][1]))
+        _, y, z = np.transpose([np.mean(corners, axis=0) for corners in faces.corners()])
+        start = half_space.NUCLEUS / 2 - half_space.HALF, -(half_space.TOP + half_space.BOTTOM) / 2  # centre of the nucleus
+        nucleus = (abs(y - start[0]) < half_space.NUCLEUS / 2) & (abs(z - start[1]) < half_space.NUCLEUS / 2)
+        expected = np.where(nucleus, half_space.FIRST_RATE, half_space.PLATE_RATE)
+        self.assertGreater(np.sum(nucleus), 0)
+        self.assertLess(np.max(np.abs(faces.cell_data["slip rate"] / expected - 1)), 0.01)
 
 
 if __name__ == "__main__":

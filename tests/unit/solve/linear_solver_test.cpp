@@ -63,6 +63,28 @@ TEST(DirectSolver, SolvesSymmetricAndUnsymmetric) {
   }
 }
 
+/// Factors act on all columns of a multivector together.
+TEST(DirectSolver, SubstitutesSeveralColumns) {
+  constexpr int n_columns = 3;
+  for (const int max_ranks : {9, 1}) {
+    Grid grid(6);
+    const auto map = grid.matrix->getRowMap();
+    const auto solver = solve::make_direct_solver({}, max_ranks);
+    ASSERT_EQ(solver->setup(system_of(grid.matrix, grid.problem.blocks()[0], true)), "");
+    fields::MultiVector exact(map, n_columns), b(map, n_columns), x(map, n_columns);
+    for (int k = 0; k < n_columns; ++k)
+      for (std::size_t i = 0; i < exact.getLocalLength(); ++i)
+        exact.replaceLocalValue(i, k, std::cos((k + 1.0) * map->getGlobalElement(i)));
+    grid.matrix->apply(exact, b);
+    solver->preconditioner()->apply(b, x);
+    x.update(-1, exact, 1);
+    for (int k = 0; k < n_columns; ++k) EXPECT_LE(x.getVector(k)->normInf(), 1e-9) << "column " << k;
+    solver->preconditioner()->apply(*b.getVector(1), *x.getVectorNonConst(1));  // another number of columns
+    x.getVectorNonConst(1)->update(-1, *exact.getVector(1), 1);
+    EXPECT_LE(x.getVector(1)->normInf(), 1e-9);
+  }
+}
+
 TEST(DirectSolver, SolvesWhereMostRanksHaveNoRows) {
   const auto comm = Tpetra::getDefaultComm();
   const auto map = make_map(
