@@ -33,6 +33,7 @@ class Scale:
     dim: int
     flow: bool = False
     quick: bool = False
+    hours: int = 1  # time limit; runs of more than an hour need `--only`
 
     @property
     def name(self):
@@ -65,6 +66,7 @@ def scales():
     yield Scale(50, 3, quick=True)
     yield Scale(300, 3)
     yield Scale(1000, 3)
+    yield Scale(3000, 3, hours=2)
     yield Scale(50, 3, flow=True)
     yield Scale(2000, 2)
     yield Scale(2000, 2, flow=True)
@@ -110,12 +112,13 @@ def blocks(options, unknowns):
 def measure(options, made, seed):
     """Prints the table and the last line; returns the exit status. made(scale, sets) generates the mesh of a
     network."""
-    chosen = common.matching(options, [s for s in scales() if s.quick or not options.quick], lambda scale: scale.name)
+    chosen = common.matching(options, [s for s in scales() if (s.quick or not options.quick) and (s.hours == 1 or options.only)], lambda scale: scale.name)
     rows, networks, beside = table.Series(COLUMNS, 26), [], {}
     for scale in chosen:
         mesh, fractures = made(scale, scale.sets(seed))
         entries = (*scale.sets(seed), f"Mesh file.path={mesh}", *scale.entries())
-        row = Row(scale.name, fractures, linear.run(options, entries, "run_" + scale.name.replace(" ", "_").replace(",", ""), scene=f"networks/{scale.file}"))
+        directory = "run_" + scale.name.replace(" ", "_").replace(",", "")
+        row = Row(scale.name, fractures, linear.run(options, entries, directory, time_limit=3600 * scale.hours, scene=f"networks/{scale.file}"))
         rows.run(row.name, row.run, row)
         networks.append((scale, row))
         if scale.dim == 3 and not scale.flow and row.run.unknowns:
