@@ -37,9 +37,10 @@ class RowSizes {
   /// Returns the diagonal of a block of the linear part; of an augmented block, the augmentation constants.
   const fields::Vector& diagonal(int block) const { return *diagonals_[block]; }
 
+  struct Row;  ///< device code
+
  private:
   enum class Type { bulk, augmented, balance };
-  struct Row;
   Type type(int block) const;
   Row row(int block, const fields::BlockVector& x, const fields::BlockVector& r) const;
   Real rounding(const fields::BlockVector& x, const std::string& scale) const;

@@ -7,11 +7,10 @@ namespace sprekk::laws {
 
 /// Unstable slip of a step, m; otherwise 0. Slip is unstable if, at the beginning of the step, the bound falls faster
 /// with slip than the rock unloads, 1/`softness`, Pa/m. The state `end` then satisfies the law, but it is not close to
-/// the last state, and there may be other solutions between them. 0 for bonded faces that part: their opening drives
-/// the slip.
+/// the last state, and there may be other solutions between them. 0 for bonded faces that separate further than they
+/// slide: their opening drives the slip.
 KOKKOS_INLINE_FUNCTION Real runaway_slip(const Joint& law, const Contact<Real>& end, Real softness) {
-  constexpr Real rounding = 1e-6;  // of the separation, relative to the slip
-  if (!(end.slip_of_step > 0) || end.separation > rounding * end.slip_of_step) return 0;
+  if (!(end.slip_of_step > 0) || (law.is_bonded() && end.separation > end.slip_of_step)) return 0;
   const auto bound_after = [&](Real slip) {
     auto at = end;
     at.slip_of_step = slip;

@@ -202,7 +202,7 @@ class Fronts {
   /// Reduces the distances of obstacles of each valid point, then sets the radii.
   void find_radii() {
     using Distances = std::array<Real, 3>;  // of boundary, fracture, rock
-    constexpr std::array<const char*, 3> names = {"a boundary", "another fracture", "another rock"};
+    constexpr std::array<const char*, 3> names = {"a boundary", "a fracture", "another rock"};
     constexpr Real far = std::numeric_limits<Real>::max();
     std::vector<Distances> least(points_.size(), {far, far, far});
     for (std::size_t p = 0; p < points_.size(); ++p)

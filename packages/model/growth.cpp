@@ -54,7 +54,8 @@ std::map<std::string, Real> integrals(Model& model) {
   return sums;
 }
 
-/// Obstacle within 1.3 faces of a tip without K. Collective.
+/// Obstacle within 1.3 faces of a tip without K: with the same rock everywhere, fractures and boundaries remain.
+/// Collective.
 std::string obstacle(const mesh::Mesh& mesh, const Point& tip) {
   const std::vector<char> all(mesh.fracture_names.size(), 1);
   for (const auto& front : mesh::find_fronts(mesh, all, [](LocalIndex) { return std::array<Real, 3>{}; }))

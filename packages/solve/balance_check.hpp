@@ -26,7 +26,7 @@ class BalanceCheck {
   Real imbalance(const fields::Evaluation& x) const;
 
   static constexpr Real allowed = 1e-8;      ///< imbalance of a solution
-  static constexpr Real largest_hidden = 1;  ///< imbalance that round-off may hide; larger ones are no solution
+  static constexpr Real largest_hidden = 1;  ///< imbalance that round-off of small flows may hide
 
  private:
   bool any_changes() const;

@@ -27,8 +27,9 @@ constexpr int max_lagged = 60;  // steps with lagged coefficients
 constexpr int max_additional = 2, max_hidden = 3;
 
 /// Convergence test. Converged: all measures are at most the tolerance. If round-off hides an error of the sums of
-/// balances, up to two full steps follow while they halve it. Failed: a measure or the residual is not finite, no
-/// progress, too many iterations, or stopped. Saves the history and the reason.
+/// balances, up to two full steps follow while they halve it; if the error exceeds the flows, steps follow until three
+/// in a row do not halve it. Failed: a measure or the residual is not finite, no progress, too many iterations, or
+/// stopped. Saves the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
   MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, NewtonStep& step,
@@ -55,7 +56,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
       fail("the residual is not finite");
     } else if (within_tolerance) {
       if (!needs_another_iteration(group)) status_ = NOX::StatusTest::Converged;
-    } else if (!accepted_.empty()) {
+    } else if (n_additional_ > 0) {
       fail("an additional iteration has larger errors");
     } else if (is_hidden && report_.iterations - picard_.n_steps() >= options_.max_iterations) {
       fail(fmt::format("the sum of a balance exceeds its flows after {} iterations", report_.iterations));
@@ -87,14 +88,19 @@ class MeasureTest : public NOX::StatusTest::Generic {
   }
 
  private:
-  /// Returns whether the sum of a balance exceeds its flows. False after three such iterates without a reduction by
-  /// half: the sum is then the round-off of large stored amounts, and the flows of the step are smaller.
+  /// Returns whether the sum of a balance exceeds its flows, and saves the iterate with the smallest sum. False after
+  /// three such iterates without a reduction by half: Newton's method does not reduce the sum, which is the round-off
+  /// of large stored amounts.
   bool hides_imbalance(const NoxGroup& group) {
     const Real imbalance = balances_.imbalance(group.x());
     if (!(imbalance > BalanceCheck::largest_hidden)) return false;
-    n_hidden_ = imbalance <= 0.5 * least_hidden_ ? 1 : n_hidden_ + 1;
-    least_hidden_ = std::min(least_hidden_, imbalance);
-    return n_hidden_ <= max_hidden;
+    const bool halved = imbalance <= 0.5 * hidden_;
+    n_hidden_ = halved ? 1 : n_hidden_ + 1;
+    if (halved) hidden_ = imbalance;
+    if (n_hidden_ > max_hidden) return false;
+    if (imbalance < least_imbalance_) save(group.x().x());
+    least_imbalance_ = std::min(least_imbalance_, imbalance);
+    return true;
   }
   /// Saves the iterate if another one follows and it is the best so far.
   bool needs_another_iteration(const NoxGroup& group) {
@@ -128,8 +134,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
   NewtonReport& report_;
   BalanceCheck balances_;
   int n_additional_ = 0;  // iterations after the measures have converged
-  int n_hidden_ = 0;      // iterates since the last reduction of an imbalance above the flows
-  Real least_hidden_ = std::numeric_limits<Real>::infinity();
+  int n_hidden_ = 0;      // iterates since the last reduction by half of an imbalance above the flows
+  Real hidden_ = std::numeric_limits<Real>::max();  // imbalance after this reduction
   BlockVector accepted_;
   Real least_imbalance_ = std::numeric_limits<Real>::infinity();
   std::vector<fields::Measure> measures_of_accepted_;

@@ -7,7 +7,7 @@ from perf.earthquakes.half_plane import POISSON, SHEAR_MODULUS, SHEAR_SPEED
 from perf.earthquakes.tensor_mesh import both_ways, fitted, growing, numbers, write
 
 FINE_ALONG, FINE_DOWN = 32e3, 18e3  # m, part of the fault with the smallest cells: half-length, depth
-CREEPING, BESIDE, ASIDE = 1.2, 1.6, 1.6  # ratios of neighbouring cells around this part, beyond the fault, away from it
+CREEPING, BEYOND, AWAY = 1.2, 1.6, 1.6  # ratios of neighbouring cells around this part, beyond the fault, away from it
 FIRST = 0.5  # size of the cells next to the fault, normal to it, over their size along it
 REFERENCE, REFERENCE_RATE = 0.6, 1e-6  # of friction, m/s
 DAMPING = SHEAR_MODULUS / (2 * SHEAR_SPEED)  # Pa s/m
@@ -17,7 +17,7 @@ WIDE, LONG, DEEP = 55e3, 80e3, 70e3  # m, half-width, half-length and depth of t
 def graded(size, fine, friction, end):
     """Coordinates from 0: equal cells up to `fine`, cells that grow up to `friction` and faster up to `end`."""
     inner = fine + fitted(growing(size * CREEPING, CREEPING, friction - fine - size), friction - fine)
-    outer = friction + fitted(growing((inner[-1] - inner[-2]) * BESIDE, BESIDE, end - friction - size), end - friction)
+    outer = friction + fitted(growing((inner[-1] - inner[-2]) * BEYOND, BEYOND, end - friction - size), end - friction)
     return np.concatenate([np.linspace(0, fine, round(fine / size) + 1), inner[1:], outer[1:]])
 
 
@@ -35,7 +35,7 @@ def write_scene(file, size, end):
     the slip rate and the compression is constant."""
     along = both_ways(graded(size, FINE_ALONG, half_space.LENGTH / 2, LONG))
     down = -graded(size, FINE_DOWN, half_space.DEPTH, DEEP)[::-1]
-    aside = both_ways(fitted(growing(FIRST * size, ASIDE, WIDE), WIDE))
+    aside = both_ways(fitted(growing(FIRST * size, AWAY, WIDE), WIDE))
     axes = [aside, along, down]
     number = numbers(axes)
     plane = number[len(aside) // 2]

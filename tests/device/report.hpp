@@ -107,8 +107,8 @@ Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
     return result;
   }
   // Scales of differences, with the mean size u of an unknown. Residual: sum of |J_ik x_k|; J_ik: the largest |J_il|
-  // u_l over u_k, or the change of J_ik per relative change of the unknowns if it is larger, as where a return to the
-  // strength is nearly singular; contact state: 1, i.e. equality.
+  // u_l over u_k, or, up to 1000 times larger, the change of J_ik per relative change of the unknowns, as where a
+  // return to the strength is nearly singular; contact state: 1, i.e. equality.
   const auto unknowns = host_of(x), numbers = host_of(kernel.out);
   constexpr Real change = 1e-6;
   const auto changed_x = filled<Real**>(
@@ -117,9 +117,9 @@ Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
           for (int k = 0; k < K::n_columns; ++k) view(e, k) = unknowns(e, k) * (1 + (k % 3 - 1) * change);
       },
       n, K::n_columns);
-  const K beside{op, changed_x, View<Real**>("out", n, K::size)};
-  run_with(beside);
-  const auto changed = host_of(beside.out);
+  const K other{op, changed_x, View<Real**>("out", n, K::size)};
+  run_with(other);
+  const auto changed = host_of(other.out);
   std::vector<Real> unit(K::n_columns, 0);
   for (int e = 0; e < n; ++e)
     for (int k = 0; k < K::n_columns; ++k) unit[k] += std::abs(unknowns(e, k)) / n;
@@ -136,7 +136,8 @@ Case evaluated(const Op& op, const View<Real**>& x, bool timed) {
       of_rows.push_back(sum);
       for (int k = 0; k < K::n_columns; ++k) {
         const int place = K::n_rows + i * K::n_columns + k;
-        of_entries.push_back(std::max(maximum / unit[k], std::abs(changed(e, place) - numbers(e, place)) / change));
+        const Real per_change = std::abs(changed(e, place) - numbers(e, place)) / change;
+        of_entries.push_back(std::clamp(per_change, maximum / unit[k], 1e3 * maximum / unit[k]));
       }
     }
     for (const auto* part : {&of_rows, &of_entries})

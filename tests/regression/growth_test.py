@@ -240,7 +240,7 @@ class Growth(ProgramTest):
         wall = ["Mesh.fractures.wall.lower corner={0.7, -1}", "Mesh.fractures.wall.upper corner={0.7, 1}", "Fractures.wall.material=joint"]
         stiff = ["Mesh.regions.stiff.lower corner={0.7, -2}", "Mesh.regions.stiff.upper corner={2, 2}", "Regions.stiff.material=steel",
                  "Materials.steel.type=elastic", "Materials.steel.Young's modulus=200 GPa", "Materials.steel.Poisson's ratio=0.25"]
-        for entries, name in ((wall, "another fracture"), (stiff, "another rock"), (["Mesh.fractures.crack.upper corner={1.9, 0}"], "a boundary")):
+        for entries, name in ((wall, "a fracture"), (stiff, "another rock"), (["Mesh.fractures.crack.upper corner={1.9, 0}"], "a boundary")):
             sets = ["Output.vtu=false", "Growth.segment=0.5", "Growth.faces=2", "Fractures.crack.toughness=1e7", "Time.steps=1", *entries]
             words = [word for one in sets for word in ("--set", one)]
             self.assertIn(f"cannot grow: it has no K, because {name} is too near", self.call("run", self.scene("growth/edge_crack_2d.xml"), "--output", "out", *words)[1])

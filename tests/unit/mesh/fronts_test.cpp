@@ -103,7 +103,7 @@ TEST(Fronts, DomainsEndAtOtherRockAndOtherFractures) {
         },
         5, "another rock");
   box.fractures["b"] = fracture({16, 0}, {16, 20});
-  expect(uniform, 6, "another fracture");
+  expect(uniform, 6, "a fracture");
 }
 
 TEST(Fronts, StraightFrontIn3DHasTheExactIntegralOfItsWeight) {

@@ -7,7 +7,7 @@ namespace sprekk::tests {
 namespace injection {
 
 constexpr Real modulus = 32e9, energy = 125, notch = 1, compression = 1e7;  // E/(1 - nu^2), Pa; G_I, J/m^2; m; Pa
-constexpr Real residual = 4.5e-5, film = 1e-4 * 0.05 * residual;  // residual aperture; what bonded faces store, m
+constexpr Real residual = 4.5e-5, film = 1e-4 * 0.05 * residual;  // residual aperture; storage of bonded faces, m
 constexpr Real share_of_film = 1.25e-4;                           // transmissivity of a sealed face
 
 /// Crack of half-length a with K = K_c in the middle of a tall body between rollers at x = +-W. K = p sqrt(2 W
