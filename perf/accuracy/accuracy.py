@@ -49,7 +49,7 @@ class Case:
 
 @dataclass
 class Row:
-    kind: str             # uniform, adaptive (repeated runs) or during run
+    kind: str             # uniform, adaptive (repeated runs), during run or reference
     order: int
     requested: float          # relative request of adaptive runs
     cells: int
@@ -89,7 +89,7 @@ def cases():
     strip = lambda h: lambda folder: meshes.wavy(folder, h)  # noqa: E731
     wavy = exact.Wavy(0.4, 1, 0.25)
     fractures = lambda *sizes: lambda folder: network(folder, *sizes)  # noqa: E731
-    rectangles = [lambda folder, sizes=sizes: network(folder, *sizes, corners=4) for sizes in ((1, 3, 5), (0.5, 1, 4), (0.25, 0.5, 2), (0.12, 0.25, 2))]
+    rectangles = [lambda folder, sizes=sizes: network(folder, *sizes, corners=4) for sizes in ((1, 3, 5), (0.5, 1, 4), (0.25, 0.5, 2), (0.08, 0.16, 2))]
     halved = [(fractures(1, 2, 4), f"Mesh file.refinements={n}") for n in (0, 1)]
     flow = dict(scene="flow/network_2d.xml", quantity="flow", coarse=box(10)[0], uniform=box(10, 20, 40, 80, 160, 320), uniform_2=[], orders=(1,))
     steady = ("Flow.compressibility=0", "Time.steps=1")
@@ -105,7 +105,7 @@ def cases():
              dimension=3),
         Case("network", "networks/random_3d_50.xml", "slip", "", fractures(1, 2, 4), halved, uniform_2=halved, dimension=3, requests=REQUESTS[:1],
              orders=(2,), finest=fractures(0.1, 0.15, 2), seconds=900, sets=("Time.schedule={1, 11}",)),
-        Case("injection", "networks/random_3d_50.xml", "slip", "", rectangles[0], rectangles[:3], uniform_2=rectangles[:2], dimension=3,
+        Case("injection", "networks/random_3d_50.xml", "slip", "", rectangles[0], rectangles[:3], uniform_2=rectangles[:3], dimension=3,
              requests=REQUESTS[:1], orders=(2,), finest=rectangles[3], sets=(*ROCK, *INJECTION)),
         Case("wavy contact", "verification/wavy.xml", "opening", "", strip(0.1), [strip(h) for h in (0.1, 0.05, 0.025, 0.0125, 0.00625)],
              float(wavy.opening_mean(0.0, 0.5))),
@@ -235,11 +235,11 @@ def measure(options, case):
     """Runs a case; uniform runs have the time steps of the most accurate adaptive run."""
     requests = case.requests[:2] if options.quick else case.requests
     runs = [adaptive(options, case, order, requested) for order in case.orders for requested in requests]
-    reference, steps = reference_of(options, case, runs[-1][1])
+    reference, steps, finest = reference_of(options, case, runs[-1][1])
     plain = {1: case.uniform, 2: case.uniform[:-1] if case.uniform_2 is None else case.uniform_2}
     rows = [uniform(options, case, order, k, source, steps) for order, sources in plain.items()
             for k, source in enumerate(sources[:2 if options.quick else None])]
-    rows += [row for row, _ in runs]
+    rows += [*finest, *(row for row, _ in runs)]
     if case.during:  # with the time steps of uniform runs
         others = ("Accuracy.refinement=during the run", f"Time.steps={steps}")
         rows += [adaptive(options, case, order, requested, None, "during run", others)[0] for order in case.orders for requested in requests]
@@ -249,15 +249,17 @@ def measure(options, case):
 
 
 def reference_of(options, case, steps):
-    """Returns the reference value and the number of time steps."""
+    """Returns the reference value, the number of time steps, and the row of the reference on a uniform mesh."""
     if case.exact:
-        return case.exact, steps
+        return case.exact, steps, []
     if case.finest:
-        return uniform(options, case, 2, "reference", case.finest, steps).value, steps
+        row = uniform(options, case, 2, "reference", case.finest, steps)
+        row.kind = "reference"
+        return row.value, steps, [row]
     row, steps = adaptive(options, case, 2, 1e-3 if options.quick else case.reference, "reference")
     if not row.reached:
         raise program.Failed(f"its reference is known to {100 * row.estimate:.2g} % only; take more --seconds")
-    return row.value, steps
+    return row.value, steps, []
 
 
 def show(case, rows):
@@ -266,16 +268,16 @@ def show(case, rows):
     plain = [row for row in rows if row.kind == "uniform"]
     for row in rows:
         words = f"{row.kind:10}{row.order:>6}{'' if math.isnan(row.requested) else format(row.requested, 'g'):>9}{row.cells:>9}{row.seconds:>9.2f}{row.error:>11.2e}"
-        if row.kind != "uniform":
+        if not math.isnan(row.requested):
             words += f"{row.estimate:>11.2e}{row.estimate / row.error:>11.2f}{seconds_at(plain, row.error) / row.seconds:>10.1f}"
-            words += "" if row.reached else "   not reached, it says"
+            words += "" if row.reached else "   not reached"
         print(words, flush=True)
 
 
 def draw(measured, file):
     figure, all_axes = style.plt.subplots(-(-len(measured) // 3), 3, figsize=(10, 3 * -(-len(measured) // 3)), squeeze=False)
     for axes, (case, rows) in zip(all_axes.flat, measured):
-        for kind, order in dict.fromkeys((row.kind, row.order) for row in rows):
+        for kind, order in dict.fromkeys((row.kind, row.order) for row in rows if row.kind != "reference"):
             of = [row for row in rows if (row.kind, row.order) == (kind, order)]
             colour = style.LINES[order - 1 + 2 * ("uniform", "adaptive", "during run").index(kind)]
             axes.loglog([row.seconds for row in of], [row.error for row in of], "o-", color=colour, markersize=4, label=f"{kind}, order {order}")
