@@ -5,7 +5,7 @@ namespace {
 
 using Lag = BlockProblem::Lag;
 
-constexpr Real far = 1;        // limit for ln of the ratio of coefficients
+constexpr Real far = 1;        // limit for |ln| of the ratio of coefficients
 constexpr Real closer = 0.3;   // factor of the distance after a failure of Newton's method
 constexpr Real little = 0.05;  // for near_, reached after three failures of Newton's method
 constexpr Real min_step = 0.25, max_growth = 1e3;
@@ -23,7 +23,7 @@ bool Picard::follow(const Evaluation& x) {
   const bool first = n_++ == 0;
   fresh_ = first;
   const auto change = problem_.lag(Lag::follow, x);
-  if (first && !(change.rise <= far)) {
+  if (first && !(change.largest <= far)) {
     problem_.lag(Lag::widest, x);
     return true;
   }

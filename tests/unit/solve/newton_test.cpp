@@ -105,18 +105,6 @@ TEST(Newton, FindsWhatAFluidOpensFromFixedPointsOnly) {
   }
 }
 
-/// The first step decreases the coefficient, so it is not repeated with a large one.
-TEST(Newton, AcceptsAFirstStepThatClosesAPath) {
-  OpeningProblem problem(Tpetra::getDefaultComm(), true);
-  Newton newton(problem, {});
-  auto x = problem.constant(3);
-  problem.set_time(1, 1);
-  const auto report = newton.solve(x);
-  EXPECT_TRUE(report.converged) << report.reason;
-  EXPECT_LE(report.iterations, 3);
-  for (const Real found : x[0]->getData()) EXPECT_NEAR(found, 1, 1e-10);
-}
-
 /// When the flow begins, a solve of the carried quantity alone replaces its step, which is linearised about the state
 /// of rest. A flow that stays the same needs none.
 TEST(Newton, CarriesAQuantityWithTheNewFlow) {
