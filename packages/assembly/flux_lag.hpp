@@ -14,7 +14,7 @@ class FluxLag {
   /// Returns the fixed coefficients, [local fracture face]; empty: computed from x.
   const ConstView<Real*>& coefficients() const { return coefficients_; }
   /// Updates the coefficients at a state, as BlockProblem::lag(). Collective.
-  fields::BlockProblem::LagChange update(fields::BlockProblem::Lag how, const Structure& structure, const State& state);
+  Real update(fields::BlockProblem::Lag how, const Structure& structure, const State& state);
   /// Computes the coefficients from x again. Local.
   void stop();
 

@@ -113,9 +113,9 @@ View<Real*> rounding_by_others(const BlockMatrix& J, int b, LocalIndex n, const 
 
 }  // namespace
 
-/// Returns this round-off for unknowns with values far above their changes (balances) or possibly far
-/// above their scale. Before the first Jacobian of an attempt, the matrix may belong to a distant state. Then balances
-/// count only in the rows of advected balances.
+/// Returns this round-off for unknowns with values far above their changes (balances) or possibly far above their
+/// scale. Before the first Jacobian of an attempt, the matrix may belong to a distant state. Then balances count only
+/// in the rows of advected balances.
 View<Real*> RowSizes::rounding_of_others(int b, const BlockVector& x) const {
   const auto& block = structure_.blocks[b];
   return rounding_by_others(matrix_, b, base::n_local_elements(*block.map), [&](int c) {
@@ -166,7 +166,7 @@ struct RowSizes::Row {
   View<Real*> others;         ///< round-off of other blocks; empty: zero
   Real rounding;              ///< round-off of the unknown
   Real stored;                ///< round-off of the storage
-  Real max_noise;
+  Real max_noise;             ///< limit of the round-off
 
   /// Returns |r| minus the round-off. The row of a prescribed unknown is its deviation, without round-off.
   KOKKOS_INLINE_FUNCTION Real size(int i) const {

@@ -235,10 +235,10 @@ std::vector<Measure> System::measures(const Evaluation& x, const BlockVector& r)
 
 Real System::merit(const Evaluation& x, const BlockVector& r) { return row_sizes_->merit(x.x(), r); }
 
-System::LagChange System::lag(Lag how, const Evaluation& x) {
+Real System::lag(Lag how, const Evaluation& x) {
   if (how != Lag::none) return flux_lag_.update(how, structure_, at(x));
   flux_lag_.stop();
-  return {};
+  return 0;
 }
 
 std::vector<contact::Constraint> System::contact_constraints_at(const State& state) const {

@@ -46,7 +46,7 @@ class System : public fields::BlockProblem, private contact::Equations {
   std::vector<fields::Measure> measures(const fields::Evaluation& x, const fields::BlockVector& r) override;
   Real merit(const fields::Evaluation& x, const fields::BlockVector& r) override;
   RCP<const fields::Vector> schur(int block) const override { return row_sizes_->schur(block); }
-  LagChange lag(Lag how, const fields::Evaluation& x) override;
+  Real lag(Lag how, const fields::Evaluation& x) override;
   fields::Globalisation& globalisation() override;
 
   /// Returns the initial state [block]: zero, except for values set by modules.

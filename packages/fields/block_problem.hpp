@@ -110,18 +110,14 @@ class BlockProblem {
   /// unknown], for the Jacobian of the last jacobian(), for preconditioners. Null if there is no contribution.
   virtual RCP<const Vector> schur(int block) const { return Teuchos::null; }
   enum class Lag { none, follow, widest };
-  /// Change of fixed coefficients, as ln of the ratio of the values at x to the previous ones.
-  struct LagChange {
-    Real largest = -1;  ///< magnitude; negative: there are no such coefficients
-    Real rise = 0;      ///< largest increase
-  };
   /// Fixes the flux coefficients of f from now on. They may depend on x by high powers, which misleads Newton's method
   /// far from a solution.
   /// * none: the coefficients depend on x again.
   /// * follow: at the first call, the values at x; in later calls, values closer to those at x.
   /// * widest: the largest values possible under the present loads.
-  /// Without such coefficients f is unchanged. Collective.
-  virtual LagChange lag(Lag how, const Evaluation& x) { return {}; }
+  /// Returns the largest |ln| of the ratio of the values at x to the previous fixed ones. Returns a negative number if
+  /// there are no such coefficients; f is then unchanged. Collective.
+  virtual Real lag(Lag how, const Evaluation& x) { return -1; }
   /// Globalisation of Newton's method, for f that is not smooth.
   virtual Globalisation& globalisation() { return smooth_; }
 

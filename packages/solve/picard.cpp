@@ -14,7 +14,7 @@ constexpr Real min_step = 0.25, max_growth = 1e3;
 
 Picard::Picard(BlockProblem& problem, const Evaluation& x) : problem_(problem) {
   problem_.lag(Lag::none, x);
-  possible_ = lags_ = problem_.lag(Lag::follow, x).largest >= 0;
+  possible_ = lags_ = problem_.lag(Lag::follow, x) >= 0;
 }
 
 bool Picard::agrees() const { return near_ < little; }
@@ -22,12 +22,12 @@ bool Picard::agrees() const { return near_ < little; }
 bool Picard::follow(const Evaluation& x) {
   const bool first = n_++ == 0;
   fresh_ = first;
-  const auto change = problem_.lag(Lag::follow, x);
-  if (first && !(change.largest <= far)) {
+  const Real away = problem_.lag(Lag::follow, x);
+  if (first && !(away <= far)) {
     problem_.lag(Lag::widest, x);
     return true;
   }
-  if (change.largest < near_) {
+  if (away < near_) {
     problem_.lag(Lag::none, x);
     lags_ = false;
   }

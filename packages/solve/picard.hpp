@@ -13,7 +13,7 @@ using fields::Evaluation;
 /// too large, and reach the neighbours only in the next iterates. A line search rejects this path, since residuals rise
 /// by orders of magnitude.
 /// - f first uses fixed coefficients, see BlockProblem::lag(). One full Newton step is made per set of coefficients.
-/// - If the first step changes coefficients strongly, it is rejected, and the iteration starts from the largest
+/// - If the first step changes the coefficients strongly, it is rejected, and the iteration starts from the largest
 ///   coefficients. As these are convex functions, iterates from above do not pass over the solution.
 /// - When coefficients agree, Newton's method takes over. If one of its steps fails, it is rejected, and the
 ///   fixed-point iteration continues to 0.3 times the distance.

@@ -69,19 +69,18 @@ class OpeningProblem : public ScalarProblem {
         lags_(lags) {}
 
   /// Updates a with a relaxation suited to the slope -3.
-  LagChange lag(Lag how, const Evaluation& x) override {
+  Real lag(Lag how, const Evaluation& x) override {
     if (!lags_ || how == Lag::none) {
       given_ = 0;
-      return {lags_ ? 0. : -1.};
+      return lags_ ? 0 : -1;
     }
     const auto values = x.x()[0]->getData();
     const Real found = width(values.size() == 0 ? 0 : values[0]);
-    const Real ratio = given_ > 0 && values.size() > 0 ? std::log(found / given_) : 0,
-               here[] = {std::abs(ratio), ratio};
+    const Real here = given_ > 0 && values.size() > 0 ? std::abs(std::log(found / given_)) : 0;
     given_ = how == Lag::widest ? 1e2 : given_ > 0 ? given_ * std::pow(found / given_, 0.25) : found;
-    Real change[2];
-    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 2, here, change);
-    return {change[0], change[1]};
+    Real away = 0;
+    Teuchos::reduceAll(*comm(), Teuchos::REDUCE_MAX, 1, &here, &away);
+    return away;
   }
 
  private:
@@ -188,10 +187,8 @@ class GivenImbalances : public ScalarProblem {
     const std::size_t k = index_of(at.x()[0]->getData()[0]);
     return {{"x", k == 0 ? 1 : 1e-13 * k}};
   }
-  Real merit(const Evaluation& at, const BlockVector&) override {
-    const std::size_t k = index_of(at.x()[0]->getData()[0]);
-    return k == 0 ? 1 : 1e-30 * k;
-  }
+  /// The merit disregards round-off.
+  Real merit(const Evaluation& at, const BlockVector&) override { return at.x()[0]->getData()[0] == 0 ? 1 : 0; }
 
  private:
   std::size_t index_of(Real x) const {
@@ -203,19 +200,24 @@ class GivenImbalances : public ScalarProblem {
   std::vector<Block> blocks_;
 };
 
-/// Of the iterates with converged measures, the solve returns the one with the smallest error of the sum.
+/// Of the iterates with converged measures, the solve returns the one with the smallest error of the sum. An iterate is
+/// no solution while a sum exceeds the flows and decreases. A sum that three iterations do not halve is round-off of
+/// large stored amounts.
 TEST(Newton, ReturnsTheIterateWithTheSmallestImbalance) {
   struct Case {
     std::vector<Real> imbalances;
     int iterations, returned;
   };
   for (const auto& [imbalances, iterations, returned] :
-       {Case{{1, 1e-10}, 1, 1},                   // the sum closes
-        Case{{1, 5e-8, 1e-10}, 2, 2},             // after an additional iteration
-        Case{{1, 1e-3, 1e-4, 1e-5, 1e-9}, 3, 3},  // two additional iterations at most
-        Case{{1, 1e-3, 9e-4, 1e-10}, 2, 2},       // the last one must halve the error
-        Case{{1, 1e-3, 2e-3, 1e-10}, 2, 1},       // larger error
-        Case{{1, 1e-3, 1e-4, 5e-4, 1e-10}, 3, 2}}) {
+       {Case{{1, 1e-10}, 1, 1},                                                     // the sum closes
+        Case{{1, 5e-8, 1e-10}, 2, 2},                                               // after an additional iteration
+        Case{{1, 1e-3, 1e-4, 1e-5, 1e-9}, 3, 3},                                    // two additional iterations at most
+        Case{{1, 1e-3, 9e-4, 1e-10}, 2, 2},                                         // the last one must halve the error
+        Case{{1, 1e-3, 2e-3, 1e-10}, 2, 1},                                         // larger error
+        Case{{1, 1e-3, 1e-4, 5e-4, 1e-10}, 3, 2}, Case{{1, 30, 9, 2, 1e-9}, 4, 4},  // above the flows
+        Case{{1, 30, 29, 31, 32, 1e-10}, 4, 2},                                     // round-off
+        Case{{1, 30, 29, 14, 13, 12, 15, 1e-10}, 6, 5},                             // halved once
+        Case{{1, 30, 22, 16, 12, 9, 1e-9}, 6, 6}}) {  // halved in two iterations, again and again
     GivenImbalances problem(Tpetra::getDefaultComm(), imbalances);
     Newton newton(problem, {});
     auto x = problem.constant(0);
@@ -225,35 +227,6 @@ TEST(Newton, ReturnsTheIterateWithTheSmallestImbalance) {
     EXPECT_EQ(report.iterations, iterations);
     EXPECT_NEAR(x[0]->getData()[0], problem.iterate(returned), 1e-12);
     EXPECT_EQ(report.measures[0].value, 1e-13 * returned);
-  }
-}
-
-/// The merit disregards round-off.
-class HiddenImbalances : public GivenImbalances {
- public:
-  using GivenImbalances::GivenImbalances;
-  Real merit(const Evaluation& at, const BlockVector&) override { return at.x()[0]->getData()[0] == 0 ? 1 : 0; }
-};
-
-/// An iterate is no solution while a sum exceeds the flows and decreases. A sum that three iterations do not halve is
-/// round-off of large stored amounts; the iterate with the smallest sum is the solution.
-TEST(Newton, AcceptsASumOfRoundOffAboveTheFlows) {
-  struct Case {
-    std::vector<Real> imbalances;
-    int iterations, returned;
-  };
-  for (const auto& [imbalances, iterations, returned] :
-       {Case{{1, 30, 9, 2, 1e-9}, 4, 4}, Case{{1, 30, 29, 31, 32, 1e-10}, 4, 2},
-        Case{{1, 30, 29, 14, 13, 12, 15, 1e-10}, 6, 5},
-        Case{{1, 30, 22, 16, 12, 9, 1e-9}, 6, 6}}) {  // halved in two iterations, again and again
-    HiddenImbalances problem(Tpetra::getDefaultComm(), imbalances);
-    Newton newton(problem, {});
-    auto x = problem.constant(0);
-    problem.set_time(1, 1);
-    const auto report = newton.solve(x);
-    ASSERT_TRUE(report.converged) << report.reason;
-    EXPECT_EQ(report.iterations, iterations);
-    EXPECT_NEAR(x[0]->getData()[0], problem.iterate(returned), 1e-12);
   }
 }
 
