@@ -51,6 +51,16 @@ class Growth(ProgramTest):
         """Integral of K_c^2/E' over the new length up to x."""
         return 1e12 / 32e9 * ((1 + 4 * (x - 0.6)) ** 3 - 1) / 12
 
+    def test_growth_after_closure(self):
+        """A tip that has stopped grows again if the load rises, also after compression has closed the crack."""
+        load = "0.5e6*(t - 3.1*(t > 2.05)*(t < 2.2))"
+        sets = [*self.STRAIGHT[:5], "Fractures.crack.toughness=1e6*(1 + 4*(x - 0.6))", *self.STRAIGHT[7:], "Time.schedule={1.7, 2, 2.1, 2.3, 2.6}",
+                f"Boundary conditions.top.traction={{0, {load}}}", f"Boundary conditions.bottom.traction={{0, -({load})}}"]
+        steps = self.run_scene("growth/edge_crack_2d.xml", *sets)["steps"]
+        for step, t in zip(steps, (1.7, 2, 2, 2.3, 2.6)):
+            self.assertAlmostEqual(tips(step)[0][0], self.exact_length(t), delta=0.05)
+        self.assertEqual([step["fractures"]["crack"]["area_open"] > 0 for step in steps], [True, True, False, True, True])
+
     def test_lost_energy(self):
         """At the load s, growth from a to b releases the integral of 2 W s^2 tan(pi x/2W)/E'. A constant toughness dissipates less: the rest is lost, in results, probes and tables."""
         sets = [*(one for one in self.STRAIGHT if "toughness" not in one and "schedule" not in one), "Growth.extensions per step=6", "Fractures.crack.toughness=1e6",

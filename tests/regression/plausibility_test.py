@@ -130,6 +130,17 @@ class Plausibility(ProgramTest):
             for text in ('fracture "fault": a cell has an edge of 0.6 m, and the cohesive zone of a rupture is 0.471 m long', "use edges of at most 0.157 m"):
                 self.assertIn(text, err)
 
+    def test_process_zone(self):
+        """The zone has 3.3 faces of 0.2 m at 2.2 MPa, 2.8 at 2.4 MPa. Longer faces far from the front do not count."""
+        text, mesh = (ROOT / "xml/growth/injection_2d.msh").read_text(), self.folder / "stretched.msh"
+        begin, nodes, end = re.split(r"(?<=\$Nodes\n)|(?=\$EndNodes)", text)
+        mesh.write_text(begin + re.sub(r"(?m)^(\d+) (\S+) ", lambda at: f"{at[1]} {max(float(at[2]), 3 * float(at[2]) - 12)} ", nodes) + end)
+        for strength, shown in (("2.2e6", ""), ("2.4e6", "the process zone has about 2.8 faces")):
+            for ranks in (1, 2):
+                err = self.warnings(self.scene("growth/injection_2d.xml"), f"Materials.bonded joint.tensile strength={strength}", f"Mesh file.path={mesh}", ranks=ranks)
+                self.assertEqual("process zone" in err, shown != "", err)
+                self.assertIn(shown, err)
+
     def test_sudden_loss_of_a_bond(self):
         """Fractures with an unbroken part have no such warning; others with the same joint do."""
         second = [f"Mesh.fractures.second.{corner}" for corner in ("lower corner={1, 1}", "upper corner={1.4, 1}")] + ["Fractures.second.material=joint"]

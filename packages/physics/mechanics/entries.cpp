@@ -131,7 +131,7 @@ void Mechanics::Fracture::describe(base::Section& s) {
   entry_of_place(s, unbroken, "unbroken", "-", base::any(),
                  "part that is bonded at the start: faces at whose centre this value or expression of x, y, z is above "
                  "0; they have no jump, no conduit and no fluid until the bond opens; other faces have no bond; "
-                 "requires the bond \"linear softening\"; absent: bond and conduit everywhere");
+                 "requires the bond \"sharp front\" or \"linear softening\"; absent: bond and conduit everywhere");
   s.entry(stress_intensity, "stress intensity", "-",
           "switch for stress intensity factors and energy release rates at the tips, in 3D along the front, written to "
           "results.json and stress_intensity.csv");

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sprekk::physics {
 
@@ -90,17 +89,18 @@ std::string notch_doubt(const Scene& scene) {
 }
 
 std::vector<std::string> process_zone_warnings(const Setting& setting) {
-  constexpr Real faces_in_zone = 3;
+  constexpr Real faces_in_zone = 3, coarse = 1.1;
   const auto& [scene, mesh, start] = setting;
-  if (std::none_of(scene.fractures.begin(), scene.fractures.end(),
-                   [](const auto& named) { return named.second.unbroken.has_value(); }))
-    return {};
-  std::vector<Real> ratio(mesh.fracture_names.size(), 0);  // per fracture: largest ratio of face and zone
+  std::vector<Real> least(mesh.fracture_names.size(), HUGE_VAL),
+      ratio(least.size(), 0);  // by fracture: length; to zone
+  for (const auto& face : mesh.fracture_faces)
+    if (is_unbroken(scene, mesh, face)) least[face.fracture] = std::min(least[face.fracture], length_of(mesh, face));
+  least = base::min_over_ranks(*mesh.comm, least);
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
     const auto rock = elasticity(scene, mesh);
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {
       const auto& face = mesh.fracture_faces[f];
-      if (!is_unbroken(scene, mesh, face)) continue;
+      if (!is_unbroken(scene, mesh, face) || length_of(mesh, face) > coarse * least[face.fracture]) continue;
       const auto& material = joint_of(scene, mesh, face.single);
       auto bond = at_place(scene, material, [&] { return material.joint(face.centre).law.bond; });
       bond = bond_of(bond, mesh, face, rock);

@@ -28,7 +28,7 @@ void compare_unbroken(Comparison& comparison);
 /// Warns about an incompressible fluid in a fracture with bonded faces in impermeable rock; empty: none.
 std::string notch_doubt(const Scene& scene);
 
-/// Warns about bonded faces longer than a third of the process zone. Collective.
+/// Warns about bonded faces longer than a third of the process zone, up to 1.1 times the shortest. Collective.
 std::vector<std::string> process_zone_warnings(const Setting& setting);
 
 }  // namespace sprekk::physics
