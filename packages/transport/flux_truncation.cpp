@@ -167,16 +167,17 @@ class Truncation final : public FluxTruncation {
     }
     return all;
   }
-  /// Fracture faces. A corner on an intersection is irregular, because values along one fracture have a kink there.
+  /// Fracture faces. A corner on an intersection is irregular, because values along a single fracture have a kink
+  /// there.
   std::vector<PatchEntity<dim>> faces() const {
-    const auto n_fractures = static_cast<GlobalIndex>(mesh_->fracture_names.size());
+    const auto n_fractures = static_cast<GlobalIndex>(mesh_->single_fractures.size());
     std::vector<PatchEntity<dim>> all;
     for (LocalIndex f = 0; f < mesh_->n_owned_fracture_faces; ++f) {
       const auto& face = mesh_->fracture_faces[f];
       auto& entity = all.emplace_back();
       entity.centre = face.centre;
       for (int k = 0; k < dim; ++k) {
-        entity.corner[k] = face.corners[k] * n_fractures + face.fracture;
+        entity.corner[k] = face.corners[k] * n_fractures + face.single;
         entity.at[k] = at(face.nodes[mesh::minus][k]);
       }
     }

@@ -124,8 +124,10 @@ class Error final : public HybridError, PlaceSums {
     std::vector<Real> given;
     base::collectively(*grid_.mesh->comm, [&] { given = values_of_constrained(u, t); });
     for (std::size_t k = 0; k < grid_.constrained_places.size(); ++k) {
-      ++sums[grid_.constrained_places[k].place][constrained];
-      sums[grid_.constrained_places[k].place][constrained_values] += given[k];
+      if (!grid_.constrained_places[k].holds) continue;
+      auto& sum = sums[grid_.constrained_places[k].place];
+      ++sum[constrained];
+      sum[constrained_values] += given[k];
     }
     grid_.places.sum_over_ranks(sums);
     if (saved) *saved = sums;

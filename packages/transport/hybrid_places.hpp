@@ -19,8 +19,9 @@ struct PlaceSums {
   using Sums = std::vector<std::array<Real, n_sums>>;
 };
 
-/// Entities with the places at which the potential s of HybridError is computed, and the components of the error.
-/// Refers to the layouts.
+/// Entities with the places at which the potential s of HybridError is computed, and the components of the error. In 3D
+/// nothing flows through a single point. Fractures that share only a point therefore have different places there, and a
+/// fracture that touches the boundary in a point is not constrained by the rock. Refers to the layouts.
 template <Shape shape>
 struct HybridPlaces {
   using Flux = HybridFlux<shape>;
@@ -53,6 +54,7 @@ struct HybridPlaces {
     mesh::Vector x;
     LocalIndex facet;
     Real share;  // weight in the mean over its face
+    bool holds;  // false: at a point of a fracture that its ridges do not constrain
   };
   /// End with a prescribed potential. Its places are constrained_places[begin] to constrained_places[end - 1].
   struct ConstrainedFace {
@@ -77,6 +79,7 @@ struct HybridPlaces {
                ConstView<char*> constrained_facets, HybridFluxParameters parameters)
       : mesh(in), flow(in, {&of_cells, &of_facets}, std::move(parameters)) {
     find_cells();
+    find_contacts_at_points();
     find_faces();
     find_sides();
     join_places();
@@ -159,6 +162,12 @@ struct HybridPlaces {
   GlobalIndex first_of_fractures() const { return mesh->n_global_nodes * (1 + mesh->n_global_nodes); }
   GlobalIndex fracture_place(GlobalIndex a, GlobalIndex b) const { return first_of_fractures() + rock_place(a, b); }
   GlobalIndex side_place(GlobalIndex face, int side) const { return 2 * first_of_fractures() + 2 * face + side; }
+  /// In 3D, corner of the faces that are connected by the ridge `first` and others, but not by ridges to all faces.
+  GlobalIndex split_place(GlobalIndex corner, GlobalIndex first) const {
+    return 2 * first_of_fractures() + first * mesh->n_global_nodes + corner;
+  }
+  bool is_of_fracture(int place) const { return places.id(place) >= first_of_fractures(); }
+  bool is_split(int place) const { return dim == 3 && places.id(place) >= 2 * first_of_fractures(); }
 
   void find_cells() {
     for (LocalIndex c = 0; c < mesh->n_owned_cells; ++c) {
@@ -182,7 +191,35 @@ struct HybridPlaces {
     std::array<int, InFace::n_places> place{};
     for (int a = 0; a < dim; ++a)
       for (int b = a; b < dim; ++b) place[InFace::place(a, b)] = places.add(fracture_place(corners[a], corners[b]));
+    for (int a = 0; a < dim && dim == 3; ++a)
+      if (const auto found = split_.find({corners[a], ridge(f, a)}); found != split_.end())
+        place[InFace::place(a, a)] = places.add(split_place(corners[a], found->second));
     return place;
+  }
+  GlobalIndex ridge(LocalIndex f, int k) const { return mesh->facets->id[flow.facet_of_face(f, k)]; }
+
+  /// Finds the faces at a corner that are not connected by ridges. All but the first group are split off. Faces of any
+  /// rank may touch the corner, so the ridges are gathered over all ranks. Collective.
+  void find_contacts_at_points() {
+    if (dim == 2) return;
+    std::vector<GlobalIndex> all;  // corner of a face, its two ridges there
+    for (LocalIndex f = 0; f < mesh->n_owned_fracture_faces; ++f)
+      for (int k = 0; k < dim; ++k)
+        all.insert(all.end(), {mesh->fracture_faces[f].corners[k], ridge(f, k), ridge(f, (k + dim - 1) % dim)});
+    all = base::gather_over_ranks(*mesh->comm, all);
+    std::map<std::pair<GlobalIndex, GlobalIndex>, GlobalIndex> group;  // [corner, ridge] lowest connected ridge
+    for (std::size_t k = 0; k < all.size(); k += 3)
+      for (const GlobalIndex one : {all[k + 1], all[k + 2]}) group[{all[k], one}] = one;
+    for (bool changes = true; changes;) {
+      changes = false;
+      for (std::size_t k = 0; k < all.size(); k += 3) {
+        auto &a = group.at({all[k], all[k + 1]}), &b = group.at({all[k], all[k + 2]});
+        changes = changes || a != b;
+        a = b = std::min(a, b);
+      }
+    }
+    for (auto one = group.begin(); one != group.end(); ++one)  // the first ridge of a corner is the lowest
+      if (one->second != group.lower_bound({one->first.first, 0})->second) split_.insert(*one);
   }
 
   void find_faces() {
@@ -223,7 +260,7 @@ struct HybridPlaces {
     };
     for (const auto& side : sides)
       for_each_pair([&](int a, int b, int k) {
-        if (side.resistance > 0) return;
+        if (side.resistance > 0 || is_split(side.of_face[k])) return;
         const int in_cell = cells[side.cell].place[InCell::place(side.corner[a], side.corner[b])];
         joined.insert(joined.end(), {places.id(in_cell), places.id(side.of_face[k])});
       });
@@ -267,7 +304,8 @@ struct HybridPlaces {
       for (const auto& point : flow.points(constrained)) {
         const int place = constrained.in_rock ? cells[constrained.entity].place[InCell::place(point.a, point.b)]
                                               : faces[constrained.entity].place[InFace::place(point.a, point.b)];
-        constrained_places.push_back({place, point.x, constrained.facet, point.share});
+        const bool holds = !constrained.in_rock || dim == 2 || point.a != point.b || !is_of_fracture(place);
+        constrained_places.push_back({place, point.x, constrained.facet, point.share, holds});
       }
       constrained_faces.push_back({constrained, begin, constrained_places.size()});
       if (is_mean(constrained))
@@ -275,6 +313,8 @@ struct HybridPlaces {
                                                         : mesh->fracture_faces[constrained.entity].cell[mesh::minus]);
     }
   }
+
+  std::map<std::pair<GlobalIndex, GlobalIndex>, GlobalIndex> split_;  // [corner, ridge] first ridge of its group
 };
 
 }  // namespace sprekk::transport

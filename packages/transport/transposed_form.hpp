@@ -134,7 +134,7 @@ struct TransposedForm : PlaceSums {
       for (int k = 0; k < dim; ++k) all.on_flows.in_faces.push_back(-in_faces[f][Flux::opposite_ridge(k)]);
     }
     for (const auto& one : grid.constrained_places)
-      all.on_facets[one.facet] -= at_places[one.place][0] / sums[one.place][constrained];
+      if (one.holds) all.on_facets[one.facet] -= at_places[one.place][0] / sums[one.place][constrained];
     return all;
   }
 };

@@ -301,7 +301,7 @@ class Finder {
       const auto shared = std::any_of(face.corners.begin(), face.corners.begin() + n, [&](GlobalIndex point) {
         return std::find(its.corners.begin(), its.corners.begin() + n, point) != its.corners.begin() + n;
       });
-      if (other != f && its.fracture == face.fracture && shared) add(other);
+      if (other != f && its.single == face.single && shared) add(other);
     }
     const Real radius = log_equivalent_radius(patch, [&](LocalIndex end) {
       const auto& its = mesh_->fracture_faces[where[end][0]];

@@ -89,7 +89,7 @@ def cases():
     strip = lambda h: lambda folder: meshes.wavy(folder, h)  # noqa: E731
     wavy = exact.Wavy(0.4, 1, 0.25)
     fractures = lambda *sizes: lambda folder: network(folder, *sizes)  # noqa: E731
-    rectangles = [lambda folder, sizes=sizes: network(folder, *sizes, corners=4) for sizes in ((1, 3, 5), (0.5, 1, 4), (0.25, 0.5, 2), (0.08, 0.16, 2))]
+    rectangles = [lambda folder, sizes=sizes: network(folder, *sizes, corners=4) for sizes in ((1, 3, 5), (0.5, 1, 4), (0.25, 0.5, 2), (0.08, 0.16, 2), (0.07, 0.14, 1.7))]
     halved = [(fractures(1, 2, 4), f"Mesh file.refinements={n}") for n in (0, 1)]
     flow = dict(scene="flow/network_2d.xml", quantity="flow", coarse=box(10)[0], uniform=box(10, 20, 40, 80, 160, 320), uniform_2=[], orders=(1,))
     steady = ("Flow.compressibility=0", "Time.steps=1")
@@ -105,8 +105,8 @@ def cases():
              dimension=3),
         Case("network", "networks/random_3d_50.xml", "slip", "", fractures(1, 2, 4), halved, uniform_2=halved, dimension=3, requests=REQUESTS[:1],
              orders=(2,), finest=fractures(0.1, 0.15, 2), seconds=900, sets=("Time.schedule={1, 11}",)),
-        Case("injection", "networks/random_3d_50.xml", "slip", "", rectangles[0], rectangles[:3], uniform_2=rectangles[:3], dimension=3,
-             requests=REQUESTS[:1], orders=(2,), finest=rectangles[3], sets=(*ROCK, *INJECTION)),
+        Case("injection", "networks/random_3d_50.xml", "slip", "", rectangles[0], rectangles[:3], uniform_2=rectangles[:4], dimension=3,
+             requests=REQUESTS[:1], orders=(2,), finest=rectangles[4], sets=(*ROCK, *INJECTION)),
         Case("wavy contact", "verification/wavy.xml", "opening", "", strip(0.1), [strip(h) for h in (0.1, 0.05, 0.025, 0.0125, 0.00625)],
              float(wavy.opening_mean(0.0, 0.5))),
         Case("T junction", "verification/t_junction.xml", "slip", "horizontal", junction(1, 0.5),

@@ -103,16 +103,16 @@ class Unresolved {
     return sum;
   }
 
-  /// Gradient G_ij = dt_i/dx_j by least squares over the faces of the same fracture that share a node of this side. It
-  /// is a minimum-norm solution in directions without neighbours. Open faces are excluded, because the traction is not
-  /// linear across the edge of contact.
+  /// Gradient G_ij = dt_i/dx_j by least squares over the faces of the same single fracture that share a node of this
+  /// side. It is a minimum-norm solution in directions without neighbours. Open faces are excluded, because the
+  /// traction is not linear across the edge of contact.
   Matrix gradient(LocalIndex f, int side) const {
     const auto& face = mesh_.fracture_faces[f];
     std::vector<LocalIndex> neighbours;
     for (const LocalIndex node : face.nodes[side])
       if (node >= 0)
         for (const LocalIndex other : faces_at_.at(node))
-          if (other != f && mesh_.fracture_faces[other].fracture == face.fracture) neighbours.push_back(other);
+          if (other != f && mesh_.fracture_faces[other].single == face.single) neighbours.push_back(other);
     std::sort(neighbours.begin(), neighbours.end());
     neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
     Real largest = size_[f];

@@ -321,5 +321,41 @@ TEST(FlowEstimate, BoundsTheErrorOfFluxes) {
   }
 }
 
+/// Returns a closed box with the fracture "a" from the west to x = 1, in the lower half of the plane y = 0, with the
+/// pressure 1 at its western end.
+model::Scene half_cut(Real transmissivity) {
+  auto scene = open_box("tetrahedron", 4, "0");
+  scene.boundary_conditions.clear();
+  cut(scene, 1, transmissivity, INFINITY);
+  scene.mesh.fractures.at("a").upper_corner[2] = 0.5;
+  constrain(scene, "west", "1", "a");
+  return scene;
+}
+
+/// Nothing flows through the single point in which a fracture touches another one, or the boundary. The estimate does
+/// not increase with the transmissivity.
+TEST(FlowEstimate, FracturesThatTouchInAPoint) {
+  const auto fractures = [](Real transmissivity) {
+    auto scene = half_cut(transmissivity);
+    scene.mesh.fractures.at("a").upper_corner[0] = 0;
+    scene.mesh.fractures["b"] = {{0, 0, 0.5}, {1, 0, 1}};
+    scene.fractures["b"] = scene.fractures.at("a");
+    constrain(scene, "east", "0", "b");
+    return scene;
+  };
+  const auto boundary = [](Real transmissivity) {
+    auto scene = half_cut(transmissivity);
+    scene.mesh.regions["corner"] = {{-1, 0, 0.5}, {1, 1, 1}};
+    constrain(scene, "east", "0");
+    scene.boundary_conditions.at("east").region = "corner";
+    return scene;
+  };
+  for (const auto& scene : {std::function(fractures), std::function(boundary)}) {
+    const Exact none{[](const Vector3&) { return Vector3{}; }};
+    const Real low = measure(scene(1e3), none, pressure_of_a()).estimate;
+    EXPECT_NEAR(measure(scene(1e6), none, pressure_of_a()).estimate, low, 0.01 * low);
+  }
+}
+
 }  // namespace
 }  // namespace sprekk::tests
