@@ -12,6 +12,7 @@ namespace {
 constexpr Real first_stiffness = 10, weak_stiffness = 1e-3, min_stiffness = 1e-9, max_stiffness = 1e8;
 constexpr Real weaker = 0.3, slightly_weaker = 0.9, stronger = 5;
 constexpr int max_proximal_solves = 120, min_cuts = 3, max_placements = 4;
+constexpr int max_changes_before_cut = 12;
 
 struct Release {
   BlockProblem& problem;
@@ -34,8 +35,8 @@ void TimeSteppingOptions::describe(base::Section& section) {
                 "relaxed to zero; only after three bisections if shorter steps are easier to solve");
 }
 
-NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
-  auto newton = newton_.solve(x);
+NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report, int max_changes) {
+  auto newton = newton_.solve(x, max_changes);
   report.newton_iterations += newton.iterations;
   append(newton.linear_solves, report.linear_solves);
   append(newton.advected_solves, report.advected_solves);
@@ -43,19 +44,21 @@ NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
 }
 
 /// Solves from the state extrapolated from x, which is that at t, to t + dt, and from x itself if there is none or
-/// Newton's method fails.
-NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, StepReport& report) {
+/// Newton's method fails. Before a shorter substep, Newton's method also fails if a state changes often: several states
+/// may satisfy the equations of a large step, and round-off would select one of them.
+NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, bool shortens, StepReport& report) {
+  const int max_changes = shortens ? max_changes_before_cut : std::numeric_limits<int>::max();
   if (options_.predicts) {
     if (auto predicted = predictor_.predict(x.x(), t, dt); !predicted.empty()) {
       Evaluation from(predicted);
-      auto newton = solve(from, report);
+      auto newton = solve(from, report, max_changes);
       if (newton.converged || newton.stopped) {
         x = from;
         return newton;
       }
     }
   }
-  return solve(x, report);
+  return solve(x, report, max_changes);
 }
 
 /// Proximal continuation. Springs pull the sides of fractures to their present position. Newton's method finds the
@@ -124,7 +127,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     size = std::min(size, whole - done);
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
-    auto newton = solve_from_prediction(at, report.time, end - report.time, report);
+    auto newton = solve_from_prediction(at, report.time, end - report.time, size > largest_relaxed, report);
     const bool relaxes = options_.proximal_continuation && size <= largest_relaxed && (!relaxed || size == 1);
     if (!newton.converged && !newton.stopped && relaxes) {
       relaxed = true;

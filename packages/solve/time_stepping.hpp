@@ -44,8 +44,8 @@ class TimeStepper {
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
-  NewtonReport solve(Evaluation& x, StepReport& report);
-  NewtonReport solve_from_prediction(Evaluation& x, Real t, Real dt, StepReport& report);
+  NewtonReport solve(Evaluation& x, StepReport& report, int max_changes = std::numeric_limits<int>::max());
+  NewtonReport solve_from_prediction(Evaluation& x, Real t, Real dt, bool shortens, StepReport& report);
   NewtonReport place_at_minimum_norm(Evaluation& x, NewtonReport newton, int& placements, StepReport& report);
   NewtonReport relax(Evaluation& x, StepReport& report);
 
