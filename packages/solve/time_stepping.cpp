@@ -12,7 +12,7 @@ namespace {
 constexpr Real first_stiffness = 10, weak_stiffness = 1e-3, min_stiffness = 1e-9, max_stiffness = 1e8;
 constexpr Real weaker = 0.3, slightly_weaker = 0.9, stronger = 5;
 constexpr int max_proximal_solves = 120, min_cuts = 3, max_placements = 4;
-constexpr int max_changes_before_cut = 12;
+constexpr int max_changes_before_cut = 12, max_failed_solves = 50;
 
 struct Release {
   BlockProblem& problem;
@@ -33,6 +33,11 @@ void TimeSteppingOptions::describe(base::Section& section) {
   section.entry(proximal_continuation, "proximal continuation", "-",
                 "proximal continuation after a failed Newton solve: springs between the sides of fractures, gradually "
                 "relaxed to zero; only after three bisections if shorter steps are easier to solve");
+}
+
+bool TimeStepper::is_hopeless(const StepReport& report) const {
+  return std::count_if(report.linear_solves.begin() + committed_solves_, report.linear_solves.end(),
+                       [](const auto& solve) { return !solve.converged; }) > max_failed_solves;
 }
 
 NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report, int max_changes) {
@@ -71,7 +76,7 @@ NewtonReport TimeStepper::relax(Evaluation& x, StepReport& report) {
   const Release release{problem_, x};  // also if an evaluation throws
   Real stiffness = first_stiffness, enough = weak_stiffness, factor = weaker;
   bool converged = false;  // the last solve
-  for (int k = 0; k < max_proximal_solves && stiffness < max_stiffness; ++k) {
+  for (int k = 0; k < max_proximal_solves && stiffness < max_stiffness && !is_hopeless(report); ++k) {
     const bool last = stiffness < enough;
     if (!problem_.globalisation().set_proximal_term(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
@@ -123,12 +128,14 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   long long done = 0, size = whole;
   bool relaxed = false;  // since the last commit
   report.time = t_from;
+  committed_solves_ = 0;
   while (done < whole) {
     size = std::min(size, whole - done);
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
     auto newton = solve_from_prediction(at, report.time, end - report.time, size > largest_relaxed, report);
-    const bool relaxes = options_.proximal_continuation && size <= largest_relaxed && (!relaxed || size == 1);
+    const bool relaxes =
+        options_.proximal_continuation && !is_hopeless(report) && size <= largest_relaxed && (!relaxed || size == 1);
     if (!newton.converged && !newton.stopped && relaxes) {
       relaxed = true;
       at = committed;
@@ -148,6 +155,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       done += size;
       relaxed = false;
       committed_dt_ = end - report.time;
+      committed_solves_ = static_cast<std::ptrdiff_t>(report.linear_solves.size());
       report.time = t = end;
       ++report.substeps;
       size *= 2;
@@ -159,7 +167,9 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     if (!newton.floating.empty()) floating = newton.floating;
     report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
     report.oscillating = newton.oscillating;
-    if (size == 1) {
+    const bool gives_up = is_hopeless(report);
+    if (gives_up) report.reason += fmt::format("; more than {} linear solves failed", max_failed_solves);
+    if (size == 1 || gives_up) {
       if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // time of x
       if (const auto where = problem_.globalisation().where(report.oscillating); !where.empty())
         report.reason += "; faces that oscillate between contact states: " + where;

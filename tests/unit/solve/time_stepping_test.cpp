@@ -120,6 +120,22 @@ TEST(TimeStepper, HalvesWhereStatesChangeOftenAndShorterStepsAreEasier) {
   EXPECT_EQ(committed(true, 0.01).size(), 8u);
 }
 
+/// Each attempt ends after four linear solves with different dampings, the proximal continuation after eleven attempts.
+TEST(TimeStepper, EndsAfterManyFailedLinearSolves) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return 1 + x * x; }, [](Real, Real, Real) { return 0; });
+  Newton newton(problem, {});
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(0);
+  Real t = 0;
+  const auto report = stepper.advance(x, t, 1);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.linear_solves.size(), 4u * (1 + 11 + 1));
+  EXPECT_EQ(report.cuts, 1);
+  EXPECT_NE(report.reason.find("; more than 50 linear solves failed"), std::string::npos) << report.reason;
+  EXPECT_NE(report.reason.find("singular"), std::string::npos) << report.reason;
+}
+
 /// Newton directions that are twenty times too long: after the first step, step lengths of 1/16 reduce the error to a
 /// quarter each.
 TEST(Newton, GivesUpShortStepsWhereShorterTimeStepsAreEasier) {
