@@ -36,12 +36,14 @@ void Iterates::accept(const Iterate& iterate) {
 void Iterates::compare(const std::vector<char>& states) {
   const int now = static_cast<int>(merits_.size()) - 1;
   last_change_.resize(states.size(), 0);
+  n_changes_.resize(states.size(), 0);
   swinging_.assign(states.size(), 0);
   for (std::size_t k = 0; k < states.size() && now > 0; ++k) {
     if (states[k] == states_[k]) continue;
     int& last = last_change_[k];
     if (last > 0 && last >= now - 2) swinging_[k] = swing_damping;
     last = now;
+    ++n_changes_[k];
   }
   states_ = states;
 }

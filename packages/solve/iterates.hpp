@@ -1,6 +1,7 @@
 // Accepted iterates of a solve by Newton's method: merits, step lengths and contact states.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <vector>
@@ -46,6 +47,8 @@ class Iterates {
   /// Returns whether none of the last five merits is below half of the best earlier merit, from the tenth iterate on,
   /// or, with `storage`, whether the last four step lengths sum to less than 0.5.
   bool stagnate(bool storage) const;
+  /// Returns the largest number of changes of state of an entity of this rank.
+  int n_changes() const { return n_changes_.empty() ? 0 : *std::max_element(n_changes_.begin(), n_changes_.end()); }
   /// Returns whether, in ten iterates without lag, no state changed and no merit was below half of the best earlier
   /// merit.
   bool stagnate_without_lag() const;
@@ -60,6 +63,7 @@ class Iterates {
   Real best_ = 0;                 // smallest merit so far
   std::vector<char> states_;      // of the last iterate
   std::vector<int> last_change_;  // [as states()] number of the last iterate with a change of state
+  std::vector<int> n_changes_;    // [as states()] number of changes of state
   std::vector<Real> swinging_;
   std::size_t pattern_ = 0;
   bool changed_ = false;                 // the pattern changed in the last iterate

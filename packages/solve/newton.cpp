@@ -32,9 +32,15 @@ constexpr int max_additional = 2, max_hidden = 3;
 /// stopped. Saves the history and the reason.
 class MeasureTest : public NOX::StatusTest::Generic {
  public:
-  MeasureTest(BlockProblem& problem, const NewtonOptions& options, const Picard& picard, NewtonStep& step,
-              NewtonReport& report)
-      : problem_(problem), options_(options), picard_(picard), step_(step), report_(report), balances_(problem) {}
+  MeasureTest(BlockProblem& problem, const NewtonOptions& options, int max_changes, const Picard& picard,
+              NewtonStep& step, NewtonReport& report)
+      : problem_(problem),
+        options_(options),
+        max_changes_(max_changes),
+        picard_(picard),
+        step_(step),
+        report_(report),
+        balances_(problem) {}
 
   StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const auto& group = dynamic_cast<const NoxGroup&>(solver.getSolutionGroup());
@@ -69,6 +75,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
     } else if (step_.report().stagnant) {
       fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
+    } else if (base::on_any_rank(*problem_.comm(), step_.iterates().n_changes() > max_changes_)) {
+      fail(fmt::format("a state changed more than {} times in {} iterations", max_changes_, report_.iterations));
     } else if (base::any_rank(*problem_.comm(), options_.should_stop)) {
       report_.stopped = true;
       fail("interrupted");
@@ -129,6 +137,7 @@ class MeasureTest : public NOX::StatusTest::Generic {
 
   BlockProblem& problem_;
   const NewtonOptions& options_;
+  int max_changes_;
   const Picard& picard_;
   NewtonStep& step_;
   NewtonReport& report_;
@@ -286,7 +295,7 @@ NewtonReport Newton::solve(BlockVector& x) {
   return report;
 }
 
-NewtonReport Newton::solve(Evaluation& x) {
+NewtonReport Newton::solve(Evaluation& x, int max_changes) {
   NewtonReport report;
   forced_->start(options_.tolerance);
   problem_.globalisation().damp(0, {});
@@ -294,7 +303,7 @@ NewtonReport Newton::solve(Evaluation& x) {
   std::optional<Picard> picard(std::in_place, problem_, x);
   const auto step = rcp(new NewtonStep(problem_, *forced_, *picard));
   const auto& found = step->report();
-  const auto test = rcp(new MeasureTest(problem_, options_, *picard, *step, report));
+  const auto test = rcp(new MeasureTest(problem_, options_, max_changes, *picard, *step, report));
   const auto parameters = nox_parameters(options_, step, problem_.comm()->getRank());
   RCP<NOX::Solver::Generic> solver;
   try {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,7 +57,8 @@ class Newton {
   /// reported; x is then the last iterate. Errors in evaluations of the problem pass through. Collective; the report is
   /// the same on all ranks.
   NewtonReport solve(BlockVector& x);
-  NewtonReport solve(Evaluation& x);
+  /// Likewise. Fails once the discrete state of an entity has changed more than max_changes times.
+  NewtonReport solve(Evaluation& x, int max_changes = std::numeric_limits<int>::max());
 
   /// Computes the Jacobian at x, for the next calls of solve_linearized(). Collective.
   void linearize(const Evaluation& x);

@@ -12,6 +12,7 @@ namespace {
 constexpr Real first_stiffness = 10, weak_stiffness = 1e-3, min_stiffness = 1e-9, max_stiffness = 1e8;
 constexpr Real weaker = 0.3, slightly_weaker = 0.9, stronger = 5;
 constexpr int max_proximal_solves = 120, min_cuts = 3, max_placements = 4;
+constexpr int max_changes_before_cut = 12, max_failed_solves = 50;
 
 struct Release {
   BlockProblem& problem;
@@ -34,8 +35,13 @@ void TimeSteppingOptions::describe(base::Section& section) {
                 "relaxed to zero; only after three bisections if shorter steps are easier to solve");
 }
 
-NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
-  auto newton = newton_.solve(x);
+bool TimeStepper::is_hopeless(const StepReport& report) const {
+  return std::count_if(report.linear_solves.begin() + committed_solves_, report.linear_solves.end(),
+                       [](const auto& solve) { return !solve.converged; }) > max_failed_solves;
+}
+
+NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report, int max_changes) {
+  auto newton = newton_.solve(x, max_changes);
   report.newton_iterations += newton.iterations;
   append(newton.linear_solves, report.linear_solves);
   append(newton.advected_solves, report.advected_solves);
@@ -43,19 +49,21 @@ NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report) {
 }
 
 /// Solves from the state extrapolated from x, which is that at t, to t + dt, and from x itself if there is none or
-/// Newton's method fails.
-NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, StepReport& report) {
+/// Newton's method fails. Before a shorter substep, Newton's method also fails if a state changes often: several states
+/// may satisfy the equations of a large step, and round-off would select one of them.
+NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, bool shortens, StepReport& report) {
+  const int max_changes = shortens ? max_changes_before_cut : std::numeric_limits<int>::max();
   if (options_.predicts) {
     if (auto predicted = predictor_.predict(x.x(), t, dt); !predicted.empty()) {
       Evaluation from(predicted);
-      auto newton = solve(from, report);
+      auto newton = solve(from, report, max_changes);
       if (newton.converged || newton.stopped) {
         x = from;
         return newton;
       }
     }
   }
-  return solve(x, report);
+  return solve(x, report, max_changes);
 }
 
 /// Proximal continuation. Springs pull the sides of fractures to their present position. Newton's method finds the
@@ -68,7 +76,7 @@ NewtonReport TimeStepper::relax(Evaluation& x, StepReport& report) {
   const Release release{problem_, x};  // also if an evaluation throws
   Real stiffness = first_stiffness, enough = weak_stiffness, factor = weaker;
   bool converged = false;  // the last solve
-  for (int k = 0; k < max_proximal_solves && stiffness < max_stiffness; ++k) {
+  for (int k = 0; k < max_proximal_solves && stiffness < max_stiffness && !is_hopeless(report); ++k) {
     const bool last = stiffness < enough;
     if (!problem_.globalisation().set_proximal_term(last ? 0 : stiffness, place)) return {};
     auto newton = solve(x, report);
@@ -120,12 +128,14 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   long long done = 0, size = whole;
   bool relaxed = false;  // since the last commit
   report.time = t_from;
+  committed_solves_ = 0;
   while (done < whole) {
     size = std::min(size, whole - done);
     const Real end = time(done + size);
     problem_.set_time(end, end - report.time);
-    auto newton = solve_from_prediction(at, report.time, end - report.time, report);
-    const bool relaxes = options_.proximal_continuation && size <= largest_relaxed && (!relaxed || size == 1);
+    auto newton = solve_from_prediction(at, report.time, end - report.time, size > largest_relaxed, report);
+    const bool relaxes =
+        options_.proximal_continuation && !is_hopeless(report) && size <= largest_relaxed && (!relaxed || size == 1);
     if (!newton.converged && !newton.stopped && relaxes) {
       relaxed = true;
       at = committed;
@@ -145,6 +155,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       done += size;
       relaxed = false;
       committed_dt_ = end - report.time;
+      committed_solves_ = static_cast<std::ptrdiff_t>(report.linear_solves.size());
       report.time = t = end;
       ++report.substeps;
       size *= 2;
@@ -156,7 +167,9 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
     if (!newton.floating.empty()) floating = newton.floating;
     report.reason = fmt::format("t = {:.6g}, dt = {:.3g}: {}", end, end - report.time, newton.reason);
     report.oscillating = newton.oscillating;
-    if (size == 1) {
+    const bool gives_up = is_hopeless(report);
+    if (gives_up) report.reason += fmt::format("; more than {} linear solves failed", max_failed_solves);
+    if (size == 1 || gives_up) {
       if (committed_dt_ > 0) problem_.set_time(report.time, committed_dt_);  // time of x
       if (const auto where = problem_.globalisation().where(report.oscillating); !where.empty())
         report.reason += "; faces that oscillate between contact states: " + where;

@@ -44,8 +44,10 @@ class TimeStepper {
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
-  NewtonReport solve(Evaluation& x, StepReport& report);
-  NewtonReport solve_from_prediction(Evaluation& x, Real t, Real dt, StepReport& report);
+  /// Returns whether many linear solves since the last commit have failed. Further attempts would fail likewise.
+  bool is_hopeless(const StepReport& report) const;
+  NewtonReport solve(Evaluation& x, StepReport& report, int max_changes = std::numeric_limits<int>::max());
+  NewtonReport solve_from_prediction(Evaluation& x, Real t, Real dt, bool shortens, StepReport& report);
   NewtonReport place_at_minimum_norm(Evaluation& x, NewtonReport newton, int& placements, StepReport& report);
   NewtonReport relax(Evaluation& x, StepReport& report);
 
@@ -53,7 +55,8 @@ class TimeStepper {
   Newton& newton_;
   TimeSteppingOptions options_;
   Predictor predictor_;
-  Real committed_dt_ = 0;  // length of the last committed substep; 0 before the first
+  Real committed_dt_ = 0;                // length of the last committed substep; 0 before the first
+  std::ptrdiff_t committed_solves_ = 0;  // linear solves of the step before the last commit
 };
 
 }  // namespace sprekk::solve

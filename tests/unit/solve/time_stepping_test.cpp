@@ -95,6 +95,47 @@ TEST(TimeStepper, HalvesThreeTimesBeforeProximalContinuationWhereShorterStepsAre
   EXPECT_FALSE(problem.proximal_terms.empty());
 }
 
+/// Newton's method overshoots by a fifth of each step in substeps longer than `largest`, so the states change in each
+/// iteration. Halving ends with an eighth of the step.
+TEST(TimeStepper, HalvesWhereStatesChangeOftenAndShorterStepsAreEasier) {
+  const auto committed = [](bool storing, Real largest) {
+    Real end = 0;
+    ScalarProblem problem(
+        Tpetra::getDefaultComm(), 4, [&](Real x, Real t, Real) { return x - (end = t); },
+        [=](Real, Real, Real dt) { return dt <= largest ? 1 : 1 / 1.2; });
+    problem.state_of = [&](Real x) { return x > end; };
+    problem.storing = storing;
+    Newton newton(problem, {});
+    TimeStepper stepper(problem, newton, {});
+    auto x = problem.constant(2);
+    Real t = 2;
+    const auto report = stepper.advance(x, t, 3);
+    EXPECT_TRUE(report.converged) << report.reason;
+    for (const Real found : x[0]->getData()) EXPECT_NEAR(found, 3, 1e-10);
+    EXPECT_TRUE(problem.proximal_terms.empty());
+    return problem.committed_times;
+  };
+  EXPECT_EQ(committed(false, 0.3), (std::vector<Real>{3}));
+  EXPECT_EQ(committed(true, 0.3), (std::vector<Real>{2.25, 2.5, 2.75, 3}));
+  EXPECT_EQ(committed(true, 0.01).size(), 8u);
+}
+
+/// Each attempt ends after four linear solves with different dampings, the proximal continuation after eleven attempts.
+TEST(TimeStepper, EndsAfterManyFailedLinearSolves) {
+  ScalarProblem problem(
+      Tpetra::getDefaultComm(), 4, [](Real x, Real, Real) { return 1 + x * x; }, [](Real, Real, Real) { return 0; });
+  Newton newton(problem, {});
+  TimeStepper stepper(problem, newton, {});
+  auto x = problem.constant(0);
+  Real t = 0;
+  const auto report = stepper.advance(x, t, 1);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.linear_solves.size(), 4u * (1 + 11 + 1));
+  EXPECT_EQ(report.cuts, 1);
+  EXPECT_NE(report.reason.find("; more than 50 linear solves failed"), std::string::npos) << report.reason;
+  EXPECT_NE(report.reason.find("singular"), std::string::npos) << report.reason;
+}
+
 /// Newton directions that are twenty times too long: after the first step, step lengths of 1/16 reduce the error to a
 /// quarter each.
 TEST(Newton, GivesUpShortStepsWhereShorterTimeStepsAreEasier) {
