@@ -14,10 +14,10 @@ namespace sprekk::laboratory {
 namespace {
 
 fields::StepErrors step_errors(const laws::StepDefect& defect) {
-  const Real order = defect.rate < 0 ? fields::StepError::unknown : 2;
+  const Real order = defect.rate < 0 ? fields::StepError::unknown : 3;
   return {{"slip rate", std::max(defect.rate, Real(0)), order},
           {"friction state", std::max(defect.state, Real(0)), order},
-          {"growth of instabilities", defect.growth, 2}};
+          {"growth of instabilities", defect.growth, 3}};
 }
 
 /// Appends the states of adaptive steps from the initial state of the driver. A step without state is repeated with a

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "fields/block_problem.hpp"
 
@@ -20,36 +21,49 @@ class Predictor {
     for (std::size_t b = 0; b < x.size(); ++b) rates_[0]->change[b]->update(1 / dt, *x[b], -1 / dt, *x0[b], 0);
   }
 
-  /// Returns x + dt r for the state x at t. r is the mean rate of the next substep: that of the substep that ends at t,
-  /// extrapolated linearly from the middles of this substep and the one before. The correction of each block is at most
-  /// half as large as the rate. Empty if the rate of the substep that ends at t is unknown. Collective.
+  /// Returns the state at t + dt for the state x at t, extrapolated by the polynomial through the states at t and at
+  /// the begins of the last three substeps at most. The correction of x + dt r, with the rate r of the substep that
+  /// ends at t, is at most half as large as dt r in each block. Empty if r is unknown. Collective.
   fields::BlockVector predict(const fields::BlockVector& x, Real t, Real dt) const {
-    const auto last =
-        std::find_if(rates_.begin(), rates_.end(), [&](const auto& rate) { return rate && rate->end == t; });
-    if (last == rates_.end()) return {};
-    const auto before =
-        std::find_if(last + 1, rates_.end(), [&](const auto& rate) { return rate && rate->end == (*last)->begin; });
+    std::vector<const Rate*> last;
+    std::vector<Real> times{t};
+    for (const auto& rate : rates_) {
+      if (!rate || rate->end != times.back() || times.size() > max_degree) continue;
+      last.push_back(&*rate);
+      times.push_back(rate->begin);
+    }
+    if (last.empty()) return {};
+    const auto lagrange = [&](std::size_t k) {
+      Real product = 1;
+      for (std::size_t j = 0; j < times.size(); ++j)
+        if (j != k) product *= (t + dt - times[j]) / (times[k] - times[j]);
+      return product;
+    };
     auto predicted = fields::create_like(x);
     for (std::size_t b = 0; b < x.size(); ++b) {
-      const auto& rate = *(*last)->change[b];
+      const auto& rate = *last[0]->change[b];
+      fields::Vector correction(rate, Teuchos::Copy);
+      correction.scale(-1);
+      Real weight = 0;
+      for (std::size_t j = last.size(); j-- > 0;) {
+        weight += lagrange(j + 1);
+        correction.update(weight * (times[j + 1] - times[j]) / dt, *last[j]->change[b], 1);
+      }
+      const Real size = correction.norm2(), largest = max_correction * rate.norm2();
       predicted[b]->update(1, *x[b], dt, rate, 0);
-      if (before == rates_.end()) continue;
-      fields::Vector difference(rate, Teuchos::Copy);
-      difference.update(-1, *(*before)->change[b], 1);
-      const Real steps = (t - (*before)->begin) / 2, size = difference.norm2(),
-                 weight = (dt + t - (*last)->begin) / (2 * steps);
-      if (size > 0) predicted[b]->update(dt * std::min(weight, max_correction * rate.norm2() / size), difference, 1);
+      if (size > 0) predicted[b]->update(dt * std::min<Real>(1, largest / size), correction, 1);
     }
     return predicted;
   }
 
  private:
   static constexpr Real max_correction = 0.5;
+  static constexpr std::size_t max_degree = 3;
   struct Rate {
     Real begin, end;  // times of the substep
     fields::BlockVector change;
   };
-  std::array<std::optional<Rate>, 3> rates_;  // the last substep first
+  std::array<std::optional<Rate>, 4> rates_;  // the last substep first
 };
 
 }  // namespace sprekk::solve

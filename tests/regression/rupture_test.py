@@ -78,7 +78,7 @@ class Rupture(BoxTest):
         that do not account for growing rates require many more steps."""
         scene = self.with_mesh("earthquakes/rupture_2d.xml", box((-40, -15), (40, 15), (40, 6)))
         entries = (f"Materials.fault rock.state evolution distance={self.L}", "Materials.fault rock.direct effect="
-                   f"{self.A} + 0.025*min(max((abs(x) - 25)/10, 0), 1)", "Time.end=975000", "Time.tolerance=0.05", "Output.vtu=false",
+                   f"{self.A} + 0.025*min(max((abs(x) - 25)/10, 0), 1)", "Time.end=980000", "Time.tolerance=0.05", "Output.vtu=false",
                    "Output.time unit=s", "Probes.profile.line={-39, 0, 39, 0}")
         events, last = [], []
         for ranks in (1, 2):

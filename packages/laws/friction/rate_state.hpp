@@ -92,16 +92,18 @@ struct SlipEvolution {
 ///
 /// V is the slip rate at the end of a step. It is extrapolated from the mean rates V_m of this step and of the two
 /// steps before, with the step lengths dt, dt_1, dt_2, and r = dt/dt_1:
-///   ln V = ln V_m + e + c e^2/(e^2 + c^2),  e = D tanh(d/D),  d = r/(1 + r) ln(V_m/V_m,1),  D = 2
+///   ln V = ln V_m + e + c q/(q + c^2),  q = e^2 + f^2,  e = D tanh(d/D),  d = r/(1 + r) ln(V_m/V_m,1),  D = 2
 /// e is of second order. c is the term of third order of a parabola through the logarithms at the middles of the steps,
 /// with the slope g at the middle of this step, the curvature k and h = (dt + dt_1)/2:
 ///   c = k (h dt/4 + dt^2/12) - g^2 dt^2/24
-/// It includes the difference between the logarithm of a mean and the mean of the logarithm. Limits prevent large
-/// extrapolations after abrupt changes: g dt is at most D in size. Then d ln V/d ln V_m >= 2/3 for any history, and
-/// V increases with V_m. The rate is exact for steady slip, and of third order for step lengths that vary smoothly. At
-/// the start, the initial slip rate replaces V_m,1, r/(1 + r) = 1 and c = 0. theta is integrated exactly for the slip
-/// rate V_m, and corrected for the change of the rate in the step, see Lag, with e/cosh(d/D)^2: without correction
-/// after an abrupt change at the start of the step.
+/// It includes the difference between the logarithm of a mean and the mean of the logarithm. f retains it where the
+/// slip rate turns smoothly; it vanishes if the last two rates differ by a factor of Euler's number or more:
+///   f = 0.2 max(0, 1 - ln(V_m,1/V_m,2)^2)
+/// Limits prevent large extrapolations after abrupt changes: g dt is at most D in size. Then d ln V/d ln V_m >= 2/3 for
+/// any history, and V increases with V_m. The rate is exact for steady slip, and of third order for step lengths that
+/// vary smoothly. At the start, the initial slip rate replaces V_m,1, r/(1 + r) = 1 and c = 0. theta is integrated
+/// exactly for the slip rate V_m, and corrected for the change of the rate in the step, see Lag, with e/cosh(d/D)^2:
+/// without correction after an abrupt change at the start of the step.
 ///
 /// Without a duration, the bound is that of the slip rate and state at the end of the last step.
 template <class Evolution>
@@ -212,22 +214,24 @@ struct RateStateFriction {
     for (int k = 0; k < 5; ++k) history[k + 1] = last[k];
   }
 
-  /// Errors of ln V and of ln theta at the end of a step; negative in the first step. The error of ln V is that of an
-  /// extrapolation of second order, from the deviation of ln V_m from the line through V_m,1 and V_1. The error of
-  /// ln theta is that of a constant slip rate in the step. Both estimates are larger than the errors. Perturbations of
-  /// steady slip grow at most at the rate s = (b - a')/a' V/L, a' = a + eta V/N (Rice and Ruina 1983, without
-  /// stiffness); the error of their growth is (s dt)^2/12. Longer steps suppress instabilities, since they are
-  /// implicit.
+  /// Errors of a step; negative in the first one. e, the error of ln V, is the deviation of ln V_m from the line
+  /// through V_m,1 and V_1, extrapolated. It changes the slip of the step by e m L, m = slip/L, relative to slip + L by
+  /// e m/(1 + m), and the friction coefficient relatively by about e a/(a + f0). The larger one counts: later steps
+  /// depend on slip and state only. The error of ln theta is the part of second order, which Lag contains, times
+  /// m/(1 + m). Perturbations of steady slip grow at most at the rate s = (b - a')/a' V/L, a' = a + eta V/N (Rice and
+  /// Ruina 1983, without stiffness); the error of their growth is (s dt)^3/4. Longer steps suppress instabilities,
+  /// since they are implicit.
   KOKKOS_INLINE_FUNCTION StepDefect defect_of_step(const Contact<Real>& at) const {
     const Real dt = at.duration, old = at.history[2];
     if (!(old > 0)) return {-1, -1, 0};
     const Real slip = std::fmax(at.slip_of_step, dt * slowest), mean = std::log(slip / (dt * initial_rate)),
                expected = at.history[1] + (at.history[3] - at.history[1]) * (1 + dt / old), h = (dt + old) / 2,
-               m = slip / distance, part = m / (1 + m), N = -at.lambda_n,
+               m = slip / distance, part = m / (1 + m), of_friction = direct / (direct + reference), N = -at.lambda_n,
                resisting = N > 0 ? direct + damping * slip / (dt * N) : direct + evolution,
                growth = m * std::fmax(evolution / resisting - 1, 0);
-    return {std::abs(mean - expected) * dt * (dt / 2 + h) / (2 * h * (h + old)),
-            std::abs(mean - at.history[1]) * part * std::fmin(1, ratio(at)) * dt / h / 12, growth * growth / 12};
+    return {std::fmax(part, of_friction) * std::abs(mean - expected) * dt * (dt / 2 + h) / (2 * h * (h + old)),
+            part * part * std::abs(mean - at.history[1]) * std::fmin(1, ratio(at)) * dt / h / 12,
+            growth * growth * growth / 4};
   }
 
  private:
@@ -255,8 +259,8 @@ struct RateStateFriction {
     if (dt_2 > 0) add_third_order(mean, dt, history, e, by, end);
     return end;
   }
-  /// Adds c e^2/(e^2 + c^2). `by` is the derivative of e. That of c is between -D/6 and (5 + D)/3, and its factor
-  /// between -1/8 and 1: the derivative of the term is at least -0.65 by - 1/3.
+  /// Adds c q/(q + c^2). `by` is the derivative of e. That of c is between -D/6 and (5 + D)/3, and its factor between
+  /// -1/8 and 1: the derivative of the term is at least -0.65 by - 1/3.
   KOKKOS_INLINE_FUNCTION static void add_third_order(Real mean, Real dt, const History& history, Real e, Real by,
                                                      End& end) {
     const Real h = (dt + history[2]) / 2, h_1 = (history[2] + history[5]) / 2, s = (mean - history[1]) / h,
@@ -265,11 +269,12 @@ struct RateStateFriction {
                by_size = size < limit ? std::copysign((1 / h + by_k * h / 2) * dt, growth) : 0,
                weight = h * dt / 4 + dt * dt / 12, c = k * weight - size * size / 24,
                by_c = by_k * weight - size * by_size / 12;
-    const Real q = e * e + c * c;
-    if (!(q > 0)) return;
-    const Real of_e = e * e / q, of_c = c * c / q;
-    end.rate += c * of_e;
-    end.rate_slope += of_e * (of_e - of_c) * by_c + 2 * of_c * e * c / q * by;
+    const Real last = history[1] - history[4], smooth = 0.2 * std::fmax(1 - last * last, 0),
+               q = e * e + smooth * smooth, sum = q + c * c;
+    if (!(sum > 0)) return;
+    const Real of_q = q / sum, of_c = c * c / sum;
+    end.rate += c * of_q;
+    end.rate_slope += of_q * (of_q - of_c) * by_c + 2 * of_c * e * c / sum * by;
   }
   /// ln(V/(2 V0)) + psi/a from ln(V/V_i) and ln(theta/theta_i).
   template <class T>

@@ -345,13 +345,12 @@ void ElasticPlasticJump<dim>::add_rate_errors(const assembly::State& end, fields
     sums[3] += force * defect.state;
     growth = std::max(growth, defect.growth);
   });
-  errors.push_back({"growth of instabilities", base::max_over_ranks(*mesh_->comm, growth), 2});
+  errors.push_back({"growth of instabilities", base::max_over_ranks(*mesh_->comm, growth), 3});
   sums = base::sum_over_ranks(*mesh_->comm, sums);
   const bool is_known = sums[4] == 0;
-  errors.push_back(
-      {"slip rate", is_known && sums[0] > 0 ? sums[1] / sums[0] : 0, is_known ? Real(2) : fields::StepError::unknown});
-  errors.push_back({"friction state", is_known && sums[2] > 0 ? sums[3] / sums[2] : 0,
-                    is_known ? Real(2) : fields::StepError::unknown});
+  const Real order = is_known ? 3 : fields::StepError::unknown;
+  errors.push_back({"slip rate", is_known && sums[0] > 0 ? sums[1] / sums[0] : 0, order});
+  errors.push_back({"friction state", is_known && sums[2] > 0 ? sums[3] / sums[2] : 0, order});
 }
 
 /// Error of the slip direction. Slip follows the traction at the end of the step, but the traction rotates during the

@@ -102,14 +102,49 @@ TEST(RateState, IsFiniteFromSlowestToFastestSlip) {
   EXPECT_EQ(law.bound(tension), 0);
 }
 
-/// (s dt)^2/12 with s = (b - a')/a' V/L, a' = a + eta V/N; zero on faces that strengthen, by a or by damping.
+/// The rate at the end of a step, as logarithm, where ln V = 0.1 cos t turns at the start of the step. The state is
+/// constant. Without the term of third order, the error is 3e-4.
+TEST(RateState, IsOfThirdOrderWhereTheRateTurns) {
+  auto law = typical_law<Ageing>();
+  law.distance = 1e9;
+  constexpr Real dt = 0.1;
+  const auto mean = [](Real begin) {  // ln V_m, by Simpson's rule
+    const auto V = [](Real t) { return std::exp(0.1 * std::cos(t)); };
+    return std::log((V(begin) + 4 * V(begin + dt / 2) + V(begin + dt)) / 6);
+  };
+  const auto friction = [&](Real rate, const Real(&history)[6]) {
+    return law.bound(slipped(law.initial_rate * std::exp(rate) * dt, dt, history)) / N;
+  };
+  const Real exact = 0.1 * std::cos(dt), steady[6] = {0, exact, dt, exact, exact, dt},
+             turning[6] = {0, mean(-dt), dt, 0.1, mean(-2 * dt), dt};
+  EXPECT_NEAR((friction(mean(0), turning) - friction(exact, steady)) / law.direct, 0, 1e-5);
+}
+
+/// Errors of a step whose rate doubles: that of ln V by its effect on friction in slow slip, and on slip in fast slip;
+/// that of the state decreases with the square of the slip.
+TEST(RateState, ErrorsOfSlipFrictionAndState) {
+  const auto law = typical_law<Ageing>();
+  const auto defect = [&](Real m) {
+    const Real dt = m * law.distance / (2 * law.initial_rate), history[6] = {0, 0, dt, 0, 0, dt};
+    return law.defect_of_step(slipped(m * law.distance, dt, history));
+  };
+  const Real e = std::log(2) * 1.5 / 4;  // |v - v_1| dt (dt/2 + h)/(2 h (h + dt_1)) with h = dt_1 = dt
+  EXPECT_NEAR(defect(1e-4).rate, e * 0.01 / 0.61, 1e-12);
+  EXPECT_NEAR(defect(1).rate, e / 2, 1e-12);
+  EXPECT_NEAR(defect(1e4).rate, e, 1e-4 * e);
+  const Real first = std::log(2) / 12, part = 1e-3 / (1 + 1e-3);
+  EXPECT_NEAR(defect(1e-3).state, first * part * part * 5e-4, 1e-12 * first);
+  EXPECT_NEAR(defect(1e4).state, first, 1e-3 * first);
+}
+
+/// (s dt)^3/4 with s = (b - a')/a' V/L, a' = a + eta V/N; zero on faces that strengthen, by a or by damping.
 TEST(RateState, ErrorOfTheGrowthOfInstabilities) {
   auto law = typical_law<Ageing>();
   law.damping = 5e6;
   const Real history[6] = {0, 0, 1, 0};
   const auto growth = [&](Real rate) { return law.defect_of_step(slipped(rate * 2, 2, history)).growth; };
   for (const Real rate : {1e-6, 0.02}) {
-    const Real damped = 0.01 + 5e6 * rate / N, exact = std::pow((0.015 / damped - 1) * rate * 2 / 1e-5, 2) / 12;
+    const Real damped = 0.01 + 5e6 * rate / N, exact = std::pow((0.015 / damped - 1) * rate * 2 / 1e-5, 3) / 4;
     EXPECT_NEAR(growth(rate), exact, 1e-12 * exact);
   }
   EXPECT_EQ(growth(0.1), 0);

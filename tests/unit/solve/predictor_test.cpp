@@ -39,6 +39,12 @@ TEST(Predictor, IsExactForQuadraticPathsAndUnequalSteps) {
   EXPECT_LT(error(f, {0, 1.5, 1.6}, 1.6, 1.7), 1e-13);
 }
 
+TEST(Predictor, IsExactForCubicPathsAfterThreeSteps) {
+  const Path f = [](Real t) { return 3 + 2 * t + t * t + 0.1 * t * t * t; };
+  EXPECT_LT(error(f, {0, 0.5, 1.5, 2.5}, 2.5, 3), 1e-13);
+  EXPECT_LT(error(f, {0, 0.5, 1.5, 2.5, 3}, 2.5, 3.5), 1e-13);  // the last substep is that of a rejected step
+}
+
 /// One substep has one rate only.
 TEST(Predictor, IsExactForLinearPathsAfterOneStep) {
   EXPECT_LT(error([](Real t) { return 3 + 2 * t; }, {0, 0.5}, 0.5, 2), 1e-14);
