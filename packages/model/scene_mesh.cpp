@@ -5,6 +5,7 @@
 #include "mesh/periodic.hpp"
 #include "mesh/raise_order.hpp"
 #include "mesh/refine.hpp"
+#include "mesh/renumber.hpp"
 #include "mesh/tips.hpp"
 #include "model/scene.hpp"
 
@@ -103,7 +104,7 @@ mesh::GlobalMesh Scene::read_mesh() const {
                  "dimension",
                  name, base::counted(n, "component"), result.dim(), mesh_file->path);
   }
-  return mesh::tie_periodic(result, pairs);
+  return mesh::tie_periodic(mesh::in_spatial_order(result), pairs);
 }
 
 }  // namespace sprekk::model
