@@ -69,7 +69,8 @@ class Source:
             connection.executemany(f"INSERT INTO {name} VALUES ({', '.join('?' * len(columns))})", content)
 
     def caption(self):
-        machine = "; load: ".join(text for text in (self["machine"], self["load"]) if text)
+        named = re.sub(r" \([^)]*\)(?= \d)", "", self["machine"])  # compiler without its package
+        machine = "; load: ".join(text for text in (named, self["load"]) if text)
         return (f"[{self.name}.csv]({self.name}.csv): `{self['command']}`, commit {self['commit']}, {self['date']}. "
                 f"Machine: {machine or 'not recorded'}.")
 

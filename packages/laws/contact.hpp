@@ -65,8 +65,8 @@ struct Contact {
   }
 };
 
-/// Errors of a step by friction that depends on the slip rate: of its slip, by the slip rate, relative to slip and
-/// evolution distance; of the logarithm of the state; of the growth of instabilities. Negative: unknown.
+/// Errors of a step by friction that depends on the slip rate: of the slip rate, by its effect on slip and friction; of
+/// the logarithm of the state; of the growth of instabilities. Negative: unknown.
 struct StepDefect {
   Real rate = 0, state = 0, growth = 0;
 };

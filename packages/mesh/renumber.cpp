@@ -8,6 +8,8 @@
 #include <random>
 #include <utility>
 
+#include "base/check.hpp"
+
 namespace sprekk::mesh {
 namespace {
 
@@ -66,6 +68,7 @@ GlobalMesh in_spatial_order(const GlobalMesh& mesh) {
 GlobalMesh permuted(const GlobalMesh& mesh, const std::vector<GlobalIndex>& new_node,
                     const std::vector<GlobalIndex>& new_cell) {
   const int dim = mesh.dim(), nodes_per_cell = n_nodes(mesh.shape);
+  SPREKK_CHECK(mesh.tied_to.empty() && mesh.tip.empty(), "permuted: the mesh has tied nodes or tips");
   GlobalMesh result = mesh;
   for (GlobalIndex node = 0; node < mesh.n_nodes(); ++node)
     std::copy_n(&mesh.coordinates[node * dim], dim, &result.coordinates[new_node[node] * dim]);

@@ -11,8 +11,8 @@
 namespace sprekk::solve {
 
 /// History of one solve. Merits are comparable from the last restart on. Local data; state patterns, merits and thus
-/// the results are the same on all ranks, except swinging(), swings() and changed_lately(), which belong to the
-/// entities of this rank.
+/// the results are the same on all ranks, except swinging(), swings(), changed_lately() and n_changes(), which
+/// belong to the entities of this rank.
 class Iterates {
  public:
   struct Iterate {

@@ -75,7 +75,8 @@ class MeasureTest : public NOX::StatusTest::Generic {
     } else if (step_.report().stagnant) {
       fail(fmt::format("no progress in {} iterations: '{}' is {:.2e}, required is {:.0e}", report_.iterations,
                        worst->name, value, options_.tolerance));
-    } else if (base::on_any_rank(*problem_.comm(), step_.iterates().n_changes() > max_changes_)) {
+    } else if (max_changes_ < std::numeric_limits<int>::max() &&
+               base::on_any_rank(*problem_.comm(), step_.iterates().n_changes() > max_changes_)) {
       fail(fmt::format("a state changed more than {} times in {} iterations", max_changes_, report_.iterations));
     } else if (base::any_rank(*problem_.comm(), options_.should_stop)) {
       report_.stopped = true;

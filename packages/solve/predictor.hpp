@@ -22,7 +22,7 @@ class Predictor {
   }
 
   /// Returns the state at t + dt for the state x at t, extrapolated by the polynomial through the states at t and at
-  /// the begins of the last three substeps at most. The correction of x + dt r, with the rate r of the substep that
+  /// the starts of the last three substeps at most. The correction of x + dt r, with the rate r of the substep that
   /// ends at t, is at most half as large as dt r in each block. Empty if r is unknown. Collective.
   fields::BlockVector predict(const fields::BlockVector& x, Real t, Real dt) const {
     std::vector<const Rate*> last;

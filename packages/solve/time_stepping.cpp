@@ -12,7 +12,7 @@ namespace {
 constexpr Real first_stiffness = 10, weak_stiffness = 1e-3, min_stiffness = 1e-9, max_stiffness = 1e8;
 constexpr Real weaker = 0.3, slightly_weaker = 0.9, stronger = 5;
 constexpr int max_proximal_solves = 120, min_cuts = 3, max_placements = 4;
-constexpr int max_changes_before_cut = 12, max_failed_solves = 50;
+constexpr int max_changes_before_cut = 12, max_failed_solves = 100;
 
 struct Release {
   BlockProblem& problem;
@@ -36,7 +36,7 @@ void TimeSteppingOptions::describe(base::Section& section) {
 }
 
 bool TimeStepper::is_hopeless(const StepReport& report) const {
-  return std::count_if(report.linear_solves.begin() + committed_solves_, report.linear_solves.end(),
+  return std::count_if(report.linear_solves.begin() + first_counted_, report.linear_solves.end(),
                        [](const auto& solve) { return !solve.converged; }) > max_failed_solves;
 }
 
@@ -44,13 +44,14 @@ NewtonReport TimeStepper::solve(Evaluation& x, StepReport& report, int max_chang
   auto newton = newton_.solve(x, max_changes);
   report.newton_iterations += newton.iterations;
   append(newton.linear_solves, report.linear_solves);
+  if (newton.converged) first_counted_ = static_cast<std::ptrdiff_t>(report.linear_solves.size());
   append(newton.advected_solves, report.advected_solves);
   return newton;
 }
 
 /// Solves from the state extrapolated from x, which is that at t, to t + dt, and from x itself if there is none or
-/// Newton's method fails. Before a shorter substep, Newton's method also fails if a state changes often: several states
-/// may satisfy the equations of a large step, and round-off would select one of them.
+/// Newton's method fails. If `shortens`, it also fails if a state changes often: several states may satisfy the
+/// equations of a large step, and round-off would select one of them.
 NewtonReport TimeStepper::solve_from_prediction(Evaluation& x, Real t, Real dt, bool shortens, StepReport& report) {
   const int max_changes = shortens ? max_changes_before_cut : std::numeric_limits<int>::max();
   if (options_.predicts) {
@@ -128,7 +129,7 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
   long long done = 0, size = whole;
   bool relaxed = false;  // since the last commit
   report.time = t_from;
-  committed_solves_ = 0;
+  first_counted_ = 0;
   while (done < whole) {
     size = std::min(size, whole - done);
     const Real end = time(done + size);
@@ -155,7 +156,6 @@ StepReport TimeStepper::advance(BlockVector& x, Real& t, Real t_to) {
       done += size;
       relaxed = false;
       committed_dt_ = end - report.time;
-      committed_solves_ = static_cast<std::ptrdiff_t>(report.linear_solves.size());
       report.time = t = end;
       ++report.substeps;
       size *= 2;

@@ -44,7 +44,7 @@ class TimeStepper {
   StepReport advance(BlockVector& x, Real& t, Real t_to);
 
  private:
-  /// Returns whether many linear solves since the last commit have failed. Further attempts would fail likewise.
+  /// Returns whether more than 100 linear solves have failed since Newton's method last converged.
   bool is_hopeless(const StepReport& report) const;
   NewtonReport solve(Evaluation& x, StepReport& report, int max_changes = std::numeric_limits<int>::max());
   NewtonReport solve_from_prediction(Evaluation& x, Real t, Real dt, bool shortens, StepReport& report);
@@ -55,8 +55,8 @@ class TimeStepper {
   Newton& newton_;
   TimeSteppingOptions options_;
   Predictor predictor_;
-  Real committed_dt_ = 0;                // length of the last committed substep; 0 before the first
-  std::ptrdiff_t committed_solves_ = 0;  // linear solves of the step before the last commit
+  Real committed_dt_ = 0;             // length of the last committed substep; 0 before the first
+  std::ptrdiff_t first_counted_ = 0;  // number of the step's linear solves when Newton's method last converged
 };
 
 }  // namespace sprekk::solve

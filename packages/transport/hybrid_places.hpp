@@ -2,13 +2,16 @@
 #pragma once
 
 #include "base/over_ranks.hpp"
+#include "mesh/union_find.hpp"
 #include "transport/hybrid_flux.hpp"
 #include "transport/places.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace sprekk::transport {
@@ -54,7 +57,7 @@ struct HybridPlaces {
     mesh::Vector x;
     LocalIndex facet;
     Real share;  // weight in the mean over its face
-    bool holds;  // false: at a point of a fracture that its ridges do not constrain
+    bool holds;  // false: corner of a rock face at a fracture, which only rims of the fracture constrain
   };
   /// End with a prescribed potential. Its places are constrained_places[begin] to constrained_places[end - 1].
   struct ConstrainedFace {
@@ -162,7 +165,8 @@ struct HybridPlaces {
   GlobalIndex first_of_fractures() const { return mesh->n_global_nodes * (1 + mesh->n_global_nodes); }
   GlobalIndex fracture_place(GlobalIndex a, GlobalIndex b) const { return first_of_fractures() + rock_place(a, b); }
   GlobalIndex side_place(GlobalIndex face, int side) const { return 2 * first_of_fractures() + 2 * face + side; }
-  /// In 3D, corner of the faces that are connected by the ridge `first` and others, but not by ridges to all faces.
+  /// In 3D, place at a corner with several groups of faces that no ridge connects: that of the group with the lowest
+  /// ridge `first`.
   GlobalIndex split_place(GlobalIndex corner, GlobalIndex first) const {
     return 2 * first_of_fractures() + first * mesh->n_global_nodes + corner;
   }
@@ -207,19 +211,21 @@ struct HybridPlaces {
       for (int k = 0; k < dim; ++k)
         all.insert(all.end(), {mesh->fracture_faces[f].corners[k], ridge(f, k), ridge(f, (k + dim - 1) % dim)});
     all = base::gather_over_ranks(*mesh->comm, all);
-    std::map<std::pair<GlobalIndex, GlobalIndex>, GlobalIndex> group;  // [corner, ridge] lowest connected ridge
+    std::vector<std::pair<GlobalIndex, GlobalIndex>> ends;  // (corner, ridge)
     for (std::size_t k = 0; k < all.size(); k += 3)
-      for (const GlobalIndex one : {all[k + 1], all[k + 2]}) group[{all[k], one}] = one;
-    for (bool changes = true; changes;) {
-      changes = false;
-      for (std::size_t k = 0; k < all.size(); k += 3) {
-        auto &a = group.at({all[k], all[k + 1]}), &b = group.at({all[k], all[k + 2]});
-        changes = changes || a != b;
-        a = b = std::min(a, b);
-      }
+      for (const GlobalIndex one : {all[k + 1], all[k + 2]}) ends.emplace_back(all[k], one);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    const auto number = [&](GlobalIndex corner, GlobalIndex one) {
+      return std::lower_bound(ends.begin(), ends.end(), std::pair(corner, one)) - ends.begin();
+    };
+    mesh::UnionFind groups(static_cast<GlobalIndex>(ends.size()));
+    for (std::size_t k = 0; k < all.size(); k += 3) groups.join(number(all[k], all[k + 1]), number(all[k], all[k + 2]));
+    for (std::size_t k = 0, first = 0; k < ends.size(); ++k) {
+      if (ends[k].first != ends[first].first) first = k;  // first end at this corner
+      const auto group = groups.find(static_cast<GlobalIndex>(k));
+      if (group != static_cast<GlobalIndex>(first)) split_[ends[k]] = ends[group].second;
     }
-    for (auto one = group.begin(); one != group.end(); ++one)  // the first ridge of a corner is the lowest
-      if (one->second != group.lower_bound({one->first.first, 0})->second) split_.insert(*one);
   }
 
   void find_faces() {

@@ -91,11 +91,15 @@ std::string notch_doubt(const Scene& scene) {
 std::vector<std::string> process_zone_warnings(const Setting& setting) {
   constexpr Real faces_in_zone = 3, coarse = 1.1;
   const auto& [scene, mesh, start] = setting;
-  std::vector<Real> least(mesh.fracture_names.size(), HUGE_VAL),
-      ratio(least.size(), 0);  // by fracture: length; to zone
-  for (const auto& face : mesh.fracture_faces)
-    if (is_unbroken(scene, mesh, face)) least[face.fracture] = std::min(least[face.fracture], length_of(mesh, face));
+  std::vector<Real> least(mesh.fracture_names.size(), HUGE_VAL);  // [fracture] length of the shortest bonded face
+  std::vector<Real> ratio(least.size(), 0);                       // [fracture] largest ratio of face and zone
+  base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
+    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
+      if (const auto& face = mesh.fracture_faces[f]; is_unbroken(scene, mesh, face))
+        least[face.fracture] = std::min(least[face.fracture], length_of(mesh, face));
+  });
   least = base::min_over_ranks(*mesh.comm, least);
+  if (std::all_of(least.begin(), least.end(), [](Real length) { return length == HUGE_VAL; })) return {};
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
     const auto rock = elasticity(scene, mesh);
     for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f) {

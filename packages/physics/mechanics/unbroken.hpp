@@ -28,7 +28,8 @@ void compare_unbroken(Comparison& comparison);
 /// Warns about an incompressible fluid in a fracture with bonded faces in impermeable rock; empty: none.
 std::string notch_doubt(const Scene& scene);
 
-/// Warns about bonded faces longer than a third of the process zone, up to 1.1 times the shortest. Collective.
+/// Warns about bonded faces longer than a third of the process zone. Only faces up to 1.1 times the shortest bonded
+/// face of their fracture count. Collective.
 std::vector<std::string> process_zone_warnings(const Setting& setting);
 
 }  // namespace sprekk::physics

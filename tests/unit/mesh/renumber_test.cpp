@@ -39,11 +39,15 @@ TEST(SpatialOrder, NeighboursHaveCloseNumbers) {
   }
 }
 
-TEST(SpatialOrder, KeepsFracturesAndBoundaries) {
+TEST(SpatialOrder, FracturesAndBoundariesAreUnchanged) {
   for (const auto& cell : all_cells) {
     const auto mesh = make_box(crossed(cell));
     const auto ordered = in_spatial_order(renumbered(mesh, 3));
     ASSERT_EQ(ordered.fracture_faces.size(), mesh.fracture_faces.size());
+    EXPECT_TRUE(std::is_sorted(ordered.fracture_faces.begin(), ordered.fracture_faces.end(),
+                               [](const auto& a, const auto& b) { return a.cell[minus] < b.cell[minus]; }));
+    for (GlobalIndex node = 0; node < ordered.n_nodes(); ++node)
+      EXPECT_EQ(norm(point(ordered, node) - point(ordered, ordered.parent_node[node])), 0) << cell;
     for (const auto& face : ordered.fracture_faces) {
       const auto on_side = [&](Side side) { return face_centre(ordered, face.cell[side], face.local_face[side]); };
       EXPECT_LT(norm(on_side(minus) - on_side(plus)), 1e-14) << cell;
