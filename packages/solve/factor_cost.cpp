@@ -19,8 +19,8 @@ constexpr Real of_setup = 3.5e-6, of_two_cycles_2d = 6.5e-7, of_two_cycles_3d = 
 
 FactorCost factor_cost(const FacetMatrix& matrix) {
   const Real n = matrix.n_unknowns;
-  if (matrix.dim < 3) return {15 * std::pow(n, 1.5), 2.5 * n * std::log2(n + 1)};
-  return {6.5 * n * n, 8 * std::pow(n, 4.0 / 3)};
+  if (matrix.dim < 3) return {12.5 * std::pow(n, 1.5), 2.5 * n * std::log2(n + 1)};
+  return {4.3 * n * n, 7 * std::pow(n, 4.0 / 3)};
 }
 
 InverseCost cost_of_factors(const FacetMatrix& matrix) {
