@@ -17,10 +17,7 @@ bool is_unbroken(const Scene& scene, const mesh::Mesh& mesh, const mesh::Mesh::F
 }
 
 void set_bond(laws::JointParameters& joint, bool unbroken) {
-  if (!unbroken) {
-    joint.law.bond = laws::Bond();
-    return;
-  }
+  if (!unbroken) return void(joint.law.bond = {});
   joint.law.elastic = laws::Shear();
   joint.law.gap.closure = laws::Closure();
   joint.law.gap.initial = joint.initial_aperture = joint.min_aperture = 0;
@@ -91,13 +88,9 @@ std::string notch_doubt(const Scene& scene) {
 std::vector<std::string> process_zone_warnings(const Setting& setting) {
   constexpr Real faces_in_zone = 3, coarse = 1.1;
   const auto& [scene, mesh, start] = setting;
-  std::vector<Real> least(mesh.fracture_names.size(), HUGE_VAL);  // [fracture] length of the shortest bonded face
-  std::vector<Real> ratio(least.size(), 0);                       // [fracture] largest ratio of face and zone
-  base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
-    for (LocalIndex f = 0; f < mesh.n_owned_fracture_faces; ++f)
-      if (const auto& face = mesh.fracture_faces[f]; is_unbroken(scene, mesh, face))
-        least[face.fracture] = std::min(least[face.fracture], length_of(mesh, face));
-  });
+  std::vector<Real> least(mesh.fracture_names.size(), HUGE_VAL), ratio(least.size(), 0);  // length; to zone
+  for (const auto& face : mesh.fracture_faces)  // expressions of bonded parts were evaluated before
+    if (is_unbroken(scene, mesh, face)) least[face.fracture] = std::min(least[face.fracture], length_of(mesh, face));
   least = base::min_over_ranks(*mesh.comm, least);
   if (std::all_of(least.begin(), least.end(), [](Real length) { return length == HUGE_VAL; })) return {};
   base::collectively(*mesh.comm, [&, &scene = scene, &mesh = mesh] {
@@ -106,8 +99,8 @@ std::vector<std::string> process_zone_warnings(const Setting& setting) {
       const auto& face = mesh.fracture_faces[f];
       if (!is_unbroken(scene, mesh, face) || length_of(mesh, face) > coarse * least[face.fracture]) continue;
       const auto& material = joint_of(scene, mesh, face.single);
-      auto bond = at_place(scene, material, [&] { return material.joint(face.centre).law.bond; });
-      bond = bond_of(bond, mesh, face, rock);
+      const auto given = at_place(scene, material, [&] { return material.joint(face.centre).law.bond; });
+      const auto bond = bond_of(given, mesh, face, rock);
       for (const LocalIndex cell : face.cell)
         ratio[face.fracture] = std::max(
             ratio[face.fracture],
