@@ -202,8 +202,8 @@ struct HybridPlaces {
   }
   GlobalIndex ridge(LocalIndex f, int k) const { return mesh->facets->id[flow.facet_of_face(f, k)]; }
 
-  /// Finds the faces at a corner that are not connected by ridges. All but the first group are split off. Faces of any
-  /// rank may touch the corner, so the ridges are gathered over all ranks. Collective.
+  /// Finds groups of faces at a corner that no ridge connects. Each group except the first gets its own place. Faces of
+  /// any rank may touch the corner, so the ridges are gathered over all ranks. Collective.
   void find_contacts_at_points() {
     if (dim == 2) return;
     std::vector<GlobalIndex> all;  // corner of a face, its two ridges there

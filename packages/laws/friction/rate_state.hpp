@@ -214,9 +214,9 @@ struct RateStateFriction {
     for (int k = 0; k < 5; ++k) history[k + 1] = last[k];
   }
 
-  /// Errors of a step; negative in the first one. e, the error of ln V, is the deviation of ln V_m from the line
-  /// through V_m,1 and V_1, extrapolated. It changes the slip of the step by e m L, m = slip/L, relative to slip + L by
-  /// e m/(1 + m), and the friction coefficient relatively by about e a/(a + f0). The larger one counts: later steps
+  /// Errors of a step; negative in the first one. E, the error of ln V, is the deviation of ln V_m from the line
+  /// through V_m,1 and V_1, extrapolated. It changes the slip of the step by E m L, m = slip/L, relative to slip + L by
+  /// E m/(1 + m), and the friction coefficient relatively by about E a/(a + f0). The larger one counts: later steps
   /// depend on slip and state only. The error of ln theta is the part of second order, which Lag contains, times
   /// m/(1 + m). Perturbations of steady slip grow at most at the rate s = (b - a')/a' V/L, a' = a + eta V/N (Rice and
   /// Ruina 1983, without stiffness); the error of their growth is (s dt)^3/4. Longer steps suppress instabilities,
